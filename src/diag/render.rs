@@ -1,0 +1,1 @@
+//! (to be written by the syntax helper: ariadne reports)

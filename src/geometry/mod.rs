@@ -1,0 +1,69 @@
+//! Shapes and what a ray finds on them, each shape in a frame of its own.
+//!
+//! A shape is exact (no tessellation). Axes run along local +z from the origin, as GroIMP's primitives do.
+
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// A shape in its own frame, in metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A ball of this radius round the origin.
+    Sphere {
+        /// Radius, greater than 0.
+        radius: f64,
+    },
+    /// A cylinder (equal radii), cone (top radius 0) or frustum from z = 0 to z = `length`.
+    Frustum {
+        /// Length along +z, greater than 0.
+        length: f64,
+        /// Radius at z = 0, at least 0.
+        base_radius: f64,
+        /// Radius at z = `length`, at least 0.
+        top_radius: f64,
+        /// Whether the disk at z = 0 is there.
+        base_cap: bool,
+        /// Whether the disk at z = `length` is there.
+        top_cap: bool,
+    },
+    /// The box `±half_x × ±half_y × 0..length`.
+    Box {
+        /// Half the extent along x (GroIMP's width / 2).
+        half_x: f64,
+        /// Half the extent along y (GroIMP's height / 2).
+        half_y: f64,
+        /// Extent along z.
+        length: f64,
+    },
+    /// `corner + u·edge_u + v·edge_v`, u and v in 0..1; its front looks along `edge_u × edge_v`.
+    Parallelogram {
+        /// One corner.
+        corner: DVec3,
+        /// First edge.
+        edge_u: DVec3,
+        /// Second edge.
+        edge_v: DVec3,
+    },
+    /// A disk of this radius in the plane z = 0; its front looks along +z.
+    Disk {
+        /// Radius, greater than 0.
+        radius: f64,
+    },
+    /// The whole plane z = 0; its front looks along +z.
+    Plane,
+    /// Triangles.
+    Mesh(Arc<TriangleMesh>),
+}
+
+/// Triangles that share vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Corner positions in metres.
+    pub positions: Vec<DVec3>,
+    /// Three corners each; the front is where they run counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// Unit shading normals per corner, or empty.
+    pub normals: Vec<DVec3>,
+    /// Texture coordinates per corner, or empty.
+    pub uvs: Vec<DVec2>,
+}

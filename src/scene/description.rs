@@ -1,0 +1,66 @@
+//! What growth hands to light: placed shapes, instances, materials, light sources, as plain data in `f64`.
+
+use crate::geometry::Shape;
+use crate::light::{Environment, Light};
+use crate::material::Material;
+use glam::DAffine3;
+
+/// Index into [`SceneDescription::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct MaterialId(pub u32);
+
+/// Index into [`SceneDescription::groups`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GroupId(pub u32);
+
+/// Which organ of the model a primitive belongs to; opaque to the scene, meaningful to who built it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct OrganId(pub u32);
+
+/// A shape somewhere in a group.
+#[derive(Clone, Debug)]
+pub struct PlacedShape {
+    /// The shape in its own frame.
+    pub shape: Shape,
+    /// From the shape's frame to the group's; any invertible affine map (mirroring and uneven scale included).
+    pub to_group: DAffine3,
+    /// Its material.
+    pub material: MaterialId,
+    /// Its organ.
+    pub organ: OrganId,
+}
+
+/// A whole group, drawn again somewhere else.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// What is drawn.
+    pub group: GroupId,
+    /// From that group's frame to this one's; any invertible affine map.
+    pub to_group: DAffine3,
+    /// Its organ (the module that made the instance).
+    pub organ: OrganId,
+}
+
+/// Geometry with a frame of its own; a prototype if instances use it more than once.
+#[derive(Clone, Debug, Default)]
+pub struct Group {
+    /// Shapes.
+    pub shapes: Vec<PlacedShape>,
+    /// Instances of other groups; never of this group itself, directly or through others.
+    pub instances: Vec<Instance>,
+}
+
+/// All that light needs to know of a model.
+#[derive(Clone, Debug, Default)]
+pub struct SceneDescription {
+    /// Materials, shared by all groups.
+    pub materials: Vec<Material>,
+    /// Groups; instances refer to them by number.
+    pub groups: Vec<Group>,
+    /// The group that is the world. Its frame is the world's (metres, z up).
+    pub root: Option<GroupId>,
+    /// Light sources that are not surfaces, in world coordinates. (Surfaces that shine have an emitting material.)
+    pub lights: Vec<Light>,
+    /// Light from infinitely far away: sky and sun.
+    pub environment: Environment,
+}
