@@ -25,7 +25,11 @@ impl Span {
     /// The range `start..end` of `file`.
     pub fn new(file: FileId, start: usize, end: usize) -> Self {
         let clamp = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
-        Self { file, start: clamp(start), end: clamp(end) }
+        Self {
+            file,
+            start: clamp(start),
+            end: clamp(end),
+        }
     }
 
     /// The smallest range of one file that holds both; `self` if the files differ.
@@ -34,7 +38,11 @@ impl Span {
         if self.file != other.file {
             return self;
         }
-        Self { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }
+        Self {
+            file: self.file,
+            start: self.start.min(other.start),
+            end: self.end.max(other.end),
+        }
     }
 }
 
@@ -56,7 +64,10 @@ pub struct SourceFile {
 impl SourceMap {
     /// Adds a file and returns its number.
     pub fn add(&mut self, name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> FileId {
-        self.files.push(SourceFile { name: name.into(), text: text.into() });
+        self.files.push(SourceFile {
+            name: name.into(),
+            text: text.into(),
+        });
         FileId(u16::try_from(self.files.len() - 1).unwrap_or(u16::MAX))
     }
 
@@ -135,8 +146,19 @@ impl Diagnostic {
     }
 
     fn at(severity: Severity, slug: &'static str, span: Span, message: String) -> Self {
-        let primary = Some(Label { span, text: String::new() });
-        Self { severity, slug, message, primary, secondary: vec![], hints: vec![], trace: vec![] }
+        let primary = Some(Label {
+            span,
+            text: String::new(),
+        });
+        Self {
+            severity,
+            slug,
+            message,
+            primary,
+            secondary: vec![],
+            hints: vec![],
+            trace: vec![],
+        }
     }
 
     /// Adds a remark to the primary place.
@@ -151,7 +173,10 @@ impl Diagnostic {
     /// Adds another place.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.secondary.push(Label { span, text: text.into() });
+        self.secondary.push(Label {
+            span,
+            text: text.into(),
+        });
         self
     }
 
@@ -207,7 +232,9 @@ impl Diagnostics {
 
 impl From<Diagnostic> for Diagnostics {
     fn from(diagnostic: Diagnostic) -> Self {
-        Self { list: vec![diagnostic] }
+        Self {
+            list: vec![diagnostic],
+        }
     }
 }
 
@@ -218,7 +245,15 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         let (a, b) = (name.to_lowercase(), c.to_lowercase());
         let within = a.len() >= 3 && (b.contains(&a) || (c.len() >= 3 && a.contains(&b)));
         let d = strsim::damerau_levenshtein(&a, &b);
-        if d <= limit { Some(d) } else { within.then_some(limit + 1) }
+        if d <= limit {
+            Some(d)
+        } else {
+            within.then_some(limit + 1)
+        }
     };
-    candidates.into_iter().filter_map(|c| Some((distance(c)?, c))).min().map(|(_, c)| c)
+    candidates
+        .into_iter()
+        .filter_map(|c| Some((distance(c)?, c)))
+        .min()
+        .map(|(_, c)| c)
 }

@@ -1,1 +1,9 @@
-//! (to be written)
+//! Numbers and space, with no knowledge of plants or light. Vectors and matrices are `glam`'s, in `f64`.
+
+pub mod angle;
+pub mod bounds;
+pub mod ray;
+pub mod tolerance;
+
+pub use bounds::Bounds3;
+pub use ray::Ray;
