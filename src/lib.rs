@@ -18,39 +18,39 @@
 //! - Same model, seed and options give the same bytes, whatever the number of threads.
 
 // ── ground ──
+pub mod math;
 pub mod color;
 pub mod diag;
-pub mod math;
-pub mod options;
 pub mod references;
+pub mod options;
 
 // ── language ──
-pub mod check;
-pub mod eval;
-pub mod graph;
-pub mod growth;
-pub mod library;
-pub mod rewrite;
 pub mod syntax;
+pub mod graph;
 pub mod turtle;
+pub mod library;
+pub mod check;
+pub mod rewrite;
+pub mod eval;
+pub mod growth;
 
 // ── world ──
-pub mod accel;
-pub mod camera;
 pub mod geometry;
-pub mod interpret;
-pub mod light;
 pub mod material;
+pub mod light;
+pub mod camera;
+pub mod accel;
 pub mod scene;
+pub mod interpret;
 
 // ── light transport ──
+pub mod sampler;
 pub mod film;
 pub mod integrator;
-pub mod sampler;
 
 // ── output and shell ──
-pub mod animation;
-pub mod cli;
 pub mod image;
+pub mod animation;
 pub mod pipeline;
 pub mod watch;
+pub mod cli;
