@@ -2,8 +2,10 @@
 
 pub mod angle;
 pub mod bounds;
+pub mod frame;
 pub mod ray;
 pub mod tolerance;
+pub mod warp;
 
 pub use bounds::Bounds3;
 pub use ray::Ray;
