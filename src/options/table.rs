@@ -1,0 +1,296 @@
+//! The table of options: one row each.
+
+use super::setting::{Origin, SetError, Setting};
+use super::value::{
+    Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Turbidity,
+};
+use crate::diag::nearest;
+use crate::math::angle::Angle;
+use glam::DVec3;
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
+use std::ops::Range;
+
+/// A command of the program that takes options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Reads and checks.
+    Check,
+    /// Grows.
+    Derive,
+    /// Makes one picture.
+    Render,
+    /// Makes the picture again whenever an input changes.
+    Watch,
+    /// Makes the frames of a film.
+    Fly,
+}
+
+use Command::{Derive, Fly, Render, Watch};
+/// Commands that run the model.
+const GROWING: &[Command] = &[Derive, Render, Watch, Fly];
+/// Commands that make pictures.
+const PICTURING: &[Command] = &[Render, Watch, Fly];
+
+/// Where an option stands in the file beside a model, and under which heading it is explained.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// Before the first heading.
+    Model,
+    /// `[camera]`
+    Camera,
+    /// `[render]`
+    Render,
+    /// `[sky]`
+    Sky,
+    /// `[fly]`
+    Fly,
+}
+
+impl Section {
+    /// All sections, in the order in which they are explained.
+    pub const ALL: [Self; 5] = [Self::Model, Self::Camera, Self::Render, Self::Sky, Self::Fly];
+
+    /// Its heading in the file; empty for what stands before the first one.
+    pub fn heading(self) -> &'static str {
+        match self {
+            Self::Model => "",
+            Self::Camera => "camera",
+            Self::Render => "render",
+            Self::Sky => "sky",
+            Self::Fly => "fly",
+        }
+    }
+}
+
+/// Which stage of a run an option is an input of. A stage is repeated only if an input of it or of an earlier one changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Growing the model.
+    Growth,
+    /// Setting up the scene.
+    Scene,
+    /// Taking the picture.
+    View,
+    /// Moving the camera from frame to frame.
+    Flight,
+    /// None: what the machine may use, or which part of the result is wanted. Never changes a byte of a picture.
+    Machine,
+}
+
+/// A row of the table.
+#[derive(Debug)]
+pub struct OptionRow {
+    /// Its name: `--key` on the command line, `key` in the file.
+    pub key: &'static str,
+    /// What its value is, in capitals; empty for a switch.
+    pub unit: &'static str,
+    /// What it does, in one sentence.
+    pub doc: &'static str,
+    /// Its value if nobody sets it.
+    pub default: &'static str,
+    /// Its place in the file.
+    pub section: Section,
+    /// What depends on it.
+    pub stage: Stage,
+    /// The commands it makes a difference to.
+    pub commands: &'static [Command],
+}
+
+impl OptionRow {
+    /// Whether it is given by its name alone.
+    pub fn is_switch(&self) -> bool {
+        self.unit.is_empty()
+    }
+}
+
+/// An option as it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<'a> {
+    /// Its row of the table.
+    pub row: &'static OptionRow,
+    /// The value as it was written.
+    pub text: &'a str,
+    /// Who wrote it.
+    pub origin: Origin,
+    /// The value in canonical form.
+    debug: &'a dyn std::fmt::Debug,
+}
+
+impl Entry<'_> {
+    /// The value in a form that is equal for equal values.
+    pub fn canonical(&self) -> String {
+        format!("{:?}", self.debug)
+    }
+}
+
+macro_rules! options {
+    ($($(#[doc = $doc:literal])+
+       $field:ident: $type:ty = $default:literal, $key:literal, $unit:literal, $section:ident, $stage:ident, $commands:expr;)*) => {
+        /// The options of a run.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct Options {
+            $($(#[doc = $doc])+ pub $field: Setting<$type>,)*
+        }
+
+        /// All options, in the order in which they are explained.
+        pub static TABLE: &[OptionRow] = &[
+            $(OptionRow {
+                key: $key,
+                unit: $unit,
+                doc: concat!($($doc),+).trim_ascii(),
+                default: $default,
+                section: Section::$section,
+                stage: Stage::$stage,
+                commands: $commands,
+            },)*
+        ];
+
+        impl Default for Options {
+            fn default() -> Self {
+                Self { $($field: Setting::from_default($default),)* }
+            }
+        }
+
+        impl Options {
+            /// Reads the value of one option; a weaker origin never replaces a stronger one.
+            ///
+            /// # Errors
+            /// If there is no such option, or `text` is no value of it.
+            pub fn set(&mut self, key: &str, text: &str, origin: Origin) -> Result<(), SetError> {
+                match key {
+                    $($key => self.$field.set($key, text, origin),)*
+                    _ => Err(SetError::Unknown {
+                        key: key.to_owned(),
+                        nearest: nearest(key, TABLE.iter().map(|row| row.key)),
+                    }),
+                }
+            }
+
+            /// All options with their values, in the order of [`TABLE`].
+            pub fn entries(&self) -> Vec<Entry<'_>> {
+                let values: Vec<(&str, Origin, &dyn std::fmt::Debug)> =
+                    vec![$((&self.$field.text, self.$field.origin, &self.$field.value),)*];
+                let with_row = TABLE.iter().zip(values);
+                with_row.map(|(row, (text, origin, debug))| Entry { row, text, origin, debug }).collect()
+            }
+        }
+    };
+}
+
+options! {
+    /// How many times the step method runs after `init`
+    steps: u32 = "1", "steps", "N", Model, Growth, GROWING;
+    /// Seed of all random numbers, of growth and of light
+    seed: i64 = "1", "seed", "N", Model, Growth, GROWING;
+    /// The step method
+    entry: String = "run", "entry", "NAME", Model, Growth, GROWING;
+    /// Growth stops with an error at more modules than this
+    max_modules: NonZeroU64 = "50000000", "max-modules", "N", Model, Growth, GROWING;
+    /// Growth and pictures that need more memory than this are refused; `auto`: three quarters of what is free
+    max_memory: Option<Bytes> = "auto", "max-memory", "BYTES", Model, Machine, GROWING;
+    /// Threads to use; `auto`: one for each core. The result does not depend on it
+    threads: Option<NonZeroUsize> = "auto", "threads", "N", Model, Machine, GROWING;
+
+    /// Where the camera stands, in metres; `auto`: where all of the model is in view
+    eye: Option<DVec3> = "auto", "eye", "X,Y,Z", Camera, View, PICTURING;
+    /// The point in the middle of the picture, in metres; `auto`: the middle of the model
+    target: Option<DVec3> = "auto", "target", "X,Y,Z", Camera, View, PICTURING;
+    /// The direction that points up in the picture
+    up: DVec3 = "0,0,1", "up", "X,Y,Z", Camera, View, PICTURING;
+    /// Vertical field of view in degrees
+    fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
+
+    /// Method that computes the light: `path` (path tracing)
+    renderer: Renderer = "path", "renderer", "NAME", Render, View, PICTURING;
+    /// Preset: `draft`, `preview` or `final`
+    quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
+    /// Size of the picture in pixels
+    size: Size = "960x640", "size", "WxH", Render, View, PICTURING;
+    /// Light paths traced for each pixel
+    samples: NonZeroU32 = "64", "samples", "N", Render, View, PICTURING;
+    /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
+    max_depth: Option<u32> = "none", "max-depth", "N", Render, View, PICTURING;
+    /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
+    time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render];
+    /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture
+    exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, PICTURING;
+
+    /// Daylight with the sun at this azimuth (from north over east) and elevation, in degrees; `auto`: only for a model without light; `none`
+    sun: Daylight = "auto", "sun", "AZ,EL", Sky, Scene, PICTURING;
+    /// Haze of the air, from 1 (clear) to 10
+    turbidity: Turbidity = "3", "turbidity", "T", Sky, Scene, PICTURING;
+    /// Reflectance of a plane to stand on; `auto`: a plane for a model without light and ground; `none`
+    ground: Ground = "auto", "ground", "R,G,B", Sky, Scene, PICTURING;
+
+    /// Flies once round the middle of the picture
+    orbit: bool = "false", "orbit", "", Fly, Flight, &[Fly];
+    /// How many frames the whole flight has, whichever of them are made
+    flight_frames: NonZeroU32 = "120", "flight-frames", "N", Fly, Flight, &[Fly];
+    /// The frames to make, the last one not included; `auto`: the whole flight
+    frames: Option<Range<u32>> = "auto", "frames", "A..B", Fly, Machine, &[Fly];
+}
+
+impl Options {
+    /// The option of this name as it stands.
+    pub fn entry_of(&self, key: &str) -> Option<Entry<'_>> {
+        self.entries().into_iter().find(|entry| entry.row.key == key)
+    }
+
+    /// The values of the options that `stage` itself depends on, as a text that is equal for equal values.
+    pub fn fingerprint(&self, stage: Stage) -> String {
+        let mut text = String::new();
+        for entry in self.entries().iter().filter(|entry| entry.row.stage == stage) {
+            text.push_str(entry.row.key);
+            text.push('=');
+            text.push_str(&entry.canonical());
+            text.push('\n');
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn rows_are_whole_and_keys_unique() {
+        let _ = Options::default();
+        let keys: BTreeSet<&str> = TABLE.iter().map(|row| row.key).collect();
+        assert_eq!(keys.len(), TABLE.len());
+        for row in TABLE {
+            assert!(!row.doc.is_empty() && !row.doc.ends_with('.'), "{}", row.key);
+            assert!(!row.commands.is_empty(), "{}", row.key);
+            assert_eq!(row.is_switch(), row.default == "false", "{}", row.key);
+        }
+    }
+
+    #[test]
+    fn stronger_origins_win_in_any_order() {
+        let orders: [[Origin; 2]; 2] = [
+            [Origin::Flag, Origin::Preset("draft")],
+            [Origin::Preset("draft"), Origin::Flag],
+        ];
+        for order in orders {
+            let mut options = Options::default();
+            for origin in order {
+                let text = if origin == Origin::Flag { "9" } else { "4" };
+                options.set("samples", text, origin).unwrap();
+            }
+            assert_eq!((options.samples.value.get(), options.samples.origin), (9, Origin::Flag));
+        }
+    }
+
+    #[test]
+    fn fingerprints_see_values_not_spelling() {
+        let mut one = Options::default();
+        let mut other = Options::default();
+        one.set("eye", "1,2,3", Origin::Flag).unwrap();
+        other.set("eye", "1.0, 2.0, 3.0", Origin::Preset("x")).unwrap();
+        assert_eq!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
+        other.set("eye", "1,2,4", Origin::Flag).unwrap();
+        assert_ne!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
+        assert_eq!(one.fingerprint(Stage::Growth), other.fingerprint(Stage::Growth));
+    }
+}
