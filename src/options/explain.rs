@@ -10,14 +10,20 @@ use std::fmt::Write;
 /// `sources` must hold the file beside the model if there is one.
 pub fn explain(options: &Options, command: Command, sources: &SourceMap) -> String {
     let entries = options.entries();
-    let known: Vec<&Entry<'_>> =
-        entries.iter().filter(|entry| entry.row.commands.contains(&command)).collect();
+    let known: Vec<&Entry<'_>> = entries
+        .iter()
+        .filter(|entry| entry.row.commands.contains(&command))
+        .collect();
     let width = |of: fn(&Entry<'_>) -> usize| known.iter().map(|e| of(e)).max().unwrap_or(0);
     let (keys, texts) = (width(|e| e.row.key.len()), width(|e| e.text.len()));
     let mut out = String::new();
     for entry in known {
         let origin = describe(entry.origin, sources);
-        let _ = writeln!(out, "{:keys$}  {:texts$}  {origin}", entry.row.key, entry.text);
+        let _ = writeln!(
+            out,
+            "{:keys$}  {:texts$}  {origin}",
+            entry.row.key, entry.text
+        );
     }
     out
 }
@@ -37,17 +43,31 @@ pub fn describe(origin: Origin, sources: &SourceMap) -> String {
 
 /// The table for the README, in Markdown.
 pub fn markdown() -> String {
-    let mut out = String::from("| option | default | what it does | section of `NAME.toml` |\n|---|---|---|---|\n");
+    let mut out = String::from(
+        "| option | default | what it does | section of `NAME.toml` |\n|---|---|---|---|\n",
+    );
     for section in Section::ALL {
         for row in TABLE.iter().filter(|row| row.section == section) {
-            let unit = if row.is_switch() { String::new() } else { format!(" {}", row.unit) };
+            let unit = if row.is_switch() {
+                String::new()
+            } else {
+                format!(" {}", row.unit)
+            };
             let heading = match section {
                 Section::Model => "(top)".into(),
                 other => format!("`[{}]`", other.heading()),
             };
-            let default = if row.is_switch() { "off".into() } else { format!("`{}`", row.default) };
+            let default = if row.is_switch() {
+                "off".into()
+            } else {
+                format!("`{}`", row.default)
+            };
             let doc = row.doc.replace('|', "\\|");
-            let _ = writeln!(out, "| `--{}{unit}` | {default} | {doc} | {heading} |", row.key);
+            let _ = writeln!(
+                out,
+                "| `--{}{unit}` | {default} | {doc} | {heading} |",
+                row.key
+            );
         }
     }
     out

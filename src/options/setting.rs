@@ -72,7 +72,11 @@ impl<T: OptionValue> Setting<T> {
     /// If the default in the table is not a value of this kind, which a test of the table excludes.
     pub(super) fn from_default(text: &str) -> Self {
         let value = T::parse(text).expect("invariant: defaults of the table parse");
-        Self { value, text: text.to_owned(), origin: Origin::Default }
+        Self {
+            value,
+            text: text.to_owned(),
+            origin: Origin::Default,
+        }
     }
 
     /// Reads `text`; keeps the old value if its origin is stronger.
@@ -88,7 +92,11 @@ impl<T: OptionValue> Setting<T> {
             text: text.to_owned(),
         })?;
         if origin.rank() >= self.origin.rank() {
-            *self = Self { value, text: text.to_owned(), origin };
+            *self = Self {
+                value,
+                text: text.to_owned(),
+                origin,
+            };
         }
         Ok(())
     }

@@ -9,9 +9,9 @@
 //! ```
 //! Keys are those of the command line. Everything wrong is reported at its place, all of it at once.
 
+use super::Options;
 use super::setting::{Origin, SetError};
 use super::table::{OptionRow, Section, TABLE};
-use super::Options;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span, nearest};
 use std::ops::Range;
 use toml::Spanned;
@@ -20,12 +20,18 @@ use toml::de::{DeTable, DeValue};
 impl Options {
     /// Takes over the values of `text`, the content of `file`.
     pub fn read_sidecar(&mut self, file: FileId, text: &str) -> Diagnostics {
-        let mut reader = Reader { options: self, file, found: Diagnostics::default() };
+        let mut reader = Reader {
+            options: self,
+            file,
+            found: Diagnostics::default(),
+        };
         let (table, errors) = DeTable::parse_recoverable(text);
         for error in errors {
             let place = reader.span(error.span().unwrap_or(0..0));
             let message = error.message().trim_end().replace('\n', "; ");
-            reader.found.push(Diagnostic::error("toml-syntax", place, message));
+            reader
+                .found
+                .push(Diagnostic::error("toml-syntax", place, message));
         }
         reader.section(Section::Model, table.get_ref());
         reader.found
@@ -67,7 +73,11 @@ impl Reader<'_> {
             return;
         }
         let near = nearest(name, headings().map(Section::heading));
-        let error = Diagnostic::error("unknown-section", place, format!("unknown section `[{name}]`"));
+        let error = Diagnostic::error(
+            "unknown-section",
+            place,
+            format!("unknown section `[{name}]`"),
+        );
         self.found.push(match near {
             Some(near) => error.hint(format!("did you mean `[{near}]`?")),
             None => error.hint("the sections are `[camera]`, `[render]`, `[sky]` and `[fly]`"),
@@ -76,17 +86,22 @@ impl Reader<'_> {
 
     fn unknown(&mut self, name: &str, place: Span) {
         let error = Diagnostic::error("unknown-option", place, format!("unknown option `{name}`"));
-        self.found.push(match nearest(name, TABLE.iter().map(|row| row.key)) {
-            Some(near) => error.hint(format!("did you mean `{near}`?")),
-            None => error.hint("`understory render --help` lists them"),
-        });
+        self.found
+            .push(match nearest(name, TABLE.iter().map(|row| row.key)) {
+                Some(near) => error.hint(format!("did you mean `{near}`?")),
+                None => error.hint("`understory render --help` lists them"),
+            });
     }
 
     fn misplaced(&mut self, row: &OptionRow, section: Section, place: Span) {
         let (key, here) = (row.key, describe(section));
-        let error =
-            Diagnostic::error("misplaced-option", place, format!("option `{key}` stands {here}"));
-        self.found.push(error.hint(format!("it belongs {}", describe(row.section))));
+        let error = Diagnostic::error(
+            "misplaced-option",
+            place,
+            format!("option `{key}` stands {here}"),
+        );
+        self.found
+            .push(error.hint(format!("it belongs {}", describe(row.section))));
     }
 
     fn value(&mut self, row: &'static OptionRow, value: &Spanned<DeValue<'_>>) {
@@ -94,13 +109,15 @@ impl Reader<'_> {
         let Some(text) = plain(value.get_ref()) else {
             let kind = value.get_ref().type_str();
             let message = format!("option `{}` cannot be a value of type {kind}", row.key);
-            self.found.push(Diagnostic::error("option-value", place, message));
+            self.found
+                .push(Diagnostic::error("option-value", place, message));
             return;
         };
         match self.options.set(row.key, &text, Origin::Sidecar(place)) {
             Ok(()) => {}
             Err(error @ (SetError::Value { .. } | SetError::Unknown { .. })) => {
-                self.found.push(Diagnostic::error("option-value", place, error.to_string()));
+                self.found
+                    .push(Diagnostic::error("option-value", place, error.to_string()));
             }
         }
     }
@@ -119,7 +136,9 @@ fn plain(value: &DeValue<'_>) -> Option<String> {
         DeValue::String(text) => Some(text.to_string()),
         DeValue::Integer(number) => {
             let digits = number.as_str().replace('_', "");
-            i64::from_str_radix(&digits, number.radix()).ok().map(|n| n.to_string())
+            i64::from_str_radix(&digits, number.radix())
+                .ok()
+                .map(|n| n.to_string())
         }
         DeValue::Float(number) => Some(number.as_str().replace('_', "")),
         DeValue::Boolean(truth) => Some(truth.to_string()),
@@ -143,7 +162,10 @@ mod tests {
         let mut options = Options::default();
         let found = options.read_sidecar(file, text);
         let line = |d: &Diagnostic| {
-            let at = d.primary.as_ref().map_or(0, |p| sources.line_column(p.span).0);
+            let at = d
+                .primary
+                .as_ref()
+                .map_or(0, |p| sources.line_column(p.span).0);
             format!("{at}: {} ({})", d.message, d.hints.join("; "))
         };
         (options, found.sorted().into_iter().map(line).collect())

@@ -1,9 +1,7 @@
 //! The table of options: one row each.
 
 use super::setting::{Origin, SetError, Setting};
-use super::value::{
-    Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Turbidity,
-};
+use super::value::{Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Turbidity};
 use crate::diag::nearest;
 use crate::math::angle::Angle;
 use glam::DVec3;
@@ -48,7 +46,13 @@ pub enum Section {
 
 impl Section {
     /// All sections, in the order in which they are explained.
-    pub const ALL: [Self; 5] = [Self::Model, Self::Camera, Self::Render, Self::Sky, Self::Fly];
+    pub const ALL: [Self; 5] = [
+        Self::Model,
+        Self::Camera,
+        Self::Render,
+        Self::Sky,
+        Self::Fly,
+    ];
 
     /// Its heading in the file; empty for what stands before the first one.
     pub fn heading(self) -> &'static str {
@@ -233,13 +237,19 @@ options! {
 impl Options {
     /// The option of this name as it stands.
     pub fn entry_of(&self, key: &str) -> Option<Entry<'_>> {
-        self.entries().into_iter().find(|entry| entry.row.key == key)
+        self.entries()
+            .into_iter()
+            .find(|entry| entry.row.key == key)
     }
 
     /// The values of the options that `stage` itself depends on, as a text that is equal for equal values.
     pub fn fingerprint(&self, stage: Stage) -> String {
         let mut text = String::new();
-        for entry in self.entries().iter().filter(|entry| entry.row.stage == stage) {
+        for entry in self
+            .entries()
+            .iter()
+            .filter(|entry| entry.row.stage == stage)
+        {
             text.push_str(entry.row.key);
             text.push('=');
             text.push_str(&entry.canonical());
@@ -260,7 +270,11 @@ mod tests {
         let keys: BTreeSet<&str> = TABLE.iter().map(|row| row.key).collect();
         assert_eq!(keys.len(), TABLE.len());
         for row in TABLE {
-            assert!(!row.doc.is_empty() && !row.doc.ends_with('.'), "{}", row.key);
+            assert!(
+                !row.doc.is_empty() && !row.doc.ends_with('.'),
+                "{}",
+                row.key
+            );
             assert!(!row.commands.is_empty(), "{}", row.key);
             assert_eq!(row.is_switch(), row.default == "false", "{}", row.key);
         }
@@ -278,7 +292,10 @@ mod tests {
                 let text = if origin == Origin::Flag { "9" } else { "4" };
                 options.set("samples", text, origin).unwrap();
             }
-            assert_eq!((options.samples.value.get(), options.samples.origin), (9, Origin::Flag));
+            assert_eq!(
+                (options.samples.value.get(), options.samples.origin),
+                (9, Origin::Flag)
+            );
         }
     }
 
@@ -287,10 +304,15 @@ mod tests {
         let mut one = Options::default();
         let mut other = Options::default();
         one.set("eye", "1,2,3", Origin::Flag).unwrap();
-        other.set("eye", "1.0, 2.0, 3.0", Origin::Preset("x")).unwrap();
+        other
+            .set("eye", "1.0, 2.0, 3.0", Origin::Preset("x"))
+            .unwrap();
         assert_eq!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
         other.set("eye", "1,2,4", Origin::Flag).unwrap();
         assert_ne!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
-        assert_eq!(one.fingerprint(Stage::Growth), other.fingerprint(Stage::Growth));
+        assert_eq!(
+            one.fingerprint(Stage::Growth),
+            other.fingerprint(Stage::Growth)
+        );
     }
 }

@@ -122,7 +122,12 @@ impl OptionValue for Size {
     fn parse(text: &str) -> Result<Self, String> {
         let side = |t: &str| t.trim().parse::<NonZeroU32>().ok().map(NonZeroU32::get);
         text.split_once(['x', '×', ','])
-            .and_then(|(w, h)| Some(Self { width: side(w)?, height: side(h)? }))
+            .and_then(|(w, h)| {
+                Some(Self {
+                    width: side(w)?,
+                    height: side(h)?,
+                })
+            })
             .ok_or_else(|| "WIDTHxHEIGHT in pixels, such as 960x640".into())
     }
 }
@@ -135,12 +140,15 @@ impl OptionValue for Daylight {
             _ => {}
         }
         match numbers::<2>(text) {
-            Some([azimuth, elevation]) if (0.0..=90.0).contains(&elevation) => {
-                Ok(Self::Sun { azimuth: Angle::deg(azimuth), elevation: Angle::deg(elevation) })
-            }
-            _ => Err("AZIMUTH,ELEVATION in degrees with an elevation from 0 to 90, \
+            Some([azimuth, elevation]) if (0.0..=90.0).contains(&elevation) => Ok(Self::Sun {
+                azimuth: Angle::deg(azimuth),
+                elevation: Angle::deg(elevation),
+            }),
+            _ => Err(
+                "AZIMUTH,ELEVATION in degrees with an elevation from 0 to 90, \
                       or `auto` or `none`"
-                .into()),
+                    .into(),
+            ),
         }
     }
 }
@@ -164,7 +172,9 @@ impl OptionValue for Ground {
 impl OptionValue for DVec3 {
     fn parse(text: &str) -> Result<Self, String> {
         let expected = || "X,Y,Z (three finite numbers)".to_owned();
-        numbers::<3>(text).map(Self::from_array).ok_or_else(expected)
+        numbers::<3>(text)
+            .map(Self::from_array)
+            .ok_or_else(expected)
     }
 }
 
@@ -200,7 +210,11 @@ impl OptionValue for Bytes {
             Some(b'G' | b'g') => 30,
             _ => 0,
         };
-        let digits = if shift == 0 { text } else { &text[..text.len() - 1] };
+        let digits = if shift == 0 {
+            text
+        } else {
+            &text[..text.len() - 1]
+        };
         let bytes = digits.trim().parse::<NonZeroU64>().ok();
         bytes
             .and_then(|n| n.get().checked_mul(1 << shift))
@@ -252,7 +266,11 @@ impl OptionValue for bool {
 
 impl OptionValue for String {
     fn parse(text: &str) -> Result<Self, String> {
-        if text.is_empty() { Err("a name".into()) } else { Ok(text.to_owned()) }
+        if text.is_empty() {
+            Err("a name".into())
+        } else {
+            Ok(text.to_owned())
+        }
     }
 }
 
@@ -261,7 +279,9 @@ impl<T: OptionValue> OptionValue for Option<T> {
     fn parse(text: &str) -> Result<Self, String> {
         match text {
             "auto" | "none" => Ok(None),
-            _ => T::parse(text).map(Some).map_err(|expected| format!("{expected}, or `auto`")),
+            _ => T::parse(text)
+                .map(Some)
+                .map_err(|expected| format!("{expected}, or `auto`")),
         }
     }
 }
@@ -290,7 +310,12 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     let mut words = text.split(',');
     for number in &mut numbers {
-        *number = words.next()?.trim().parse().ok().filter(|n: &f64| n.is_finite())?;
+        *number = words
+            .next()?
+            .trim()
+            .parse()
+            .ok()
+            .filter(|n: &f64| n.is_finite())?;
     }
     words.next().is_none().then_some(numbers)
 }
@@ -301,13 +326,28 @@ mod tests {
 
     #[test]
     fn values_are_read_as_they_are_written() {
-        assert_eq!(Size::parse("640x480"), Ok(Size { width: 640, height: 480 }));
-        assert_eq!(DVec3::parse("1, -2.5,3e2"), Ok(DVec3::new(1.0, -2.5, 300.0)));
+        assert_eq!(
+            Size::parse("640x480"),
+            Ok(Size {
+                width: 640,
+                height: 480
+            })
+        );
+        assert_eq!(
+            DVec3::parse("1, -2.5,3e2"),
+            Ok(DVec3::new(1.0, -2.5, 300.0))
+        );
         assert_eq!(Range::parse("2..4"), Ok(2..4));
         assert_eq!(Bytes::parse("2G"), Ok(Bytes(2 << 30)));
         assert_eq!(Option::<f64>::parse("auto"), Ok(None));
-        assert_eq!(NonZeroU64::parse("50_000_000").map(NonZeroU64::get), Ok(50_000_000));
-        let sun = Daylight::Sun { azimuth: Angle::deg(135.0), elevation: Angle::deg(40.0) };
+        assert_eq!(
+            NonZeroU64::parse("50_000_000").map(NonZeroU64::get),
+            Ok(50_000_000)
+        );
+        let sun = Daylight::Sun {
+            azimuth: Angle::deg(135.0),
+            elevation: Angle::deg(40.0),
+        };
         assert_eq!(Daylight::parse("135,40"), Ok(sun));
     }
 
@@ -323,7 +363,11 @@ mod tests {
         assert!(Bytes::parse("G").is_err() && Bytes::parse("99999999999G").is_err());
         assert!(Bytes::parse("é").is_err() && Bytes::parse("").is_err());
         assert!(Angle::parse("180").is_err() && Angle::parse("nan").is_err());
-        assert!(Renderer::parse("photon").unwrap_err().contains("not built yet"));
+        assert!(
+            Renderer::parse("photon")
+                .unwrap_err()
+                .contains("not built yet")
+        );
         assert!(Daylight::parse("10,91").is_err());
         assert!(Ground::parse("1,1,2").is_err());
     }
