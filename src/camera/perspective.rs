@@ -90,12 +90,7 @@ impl Camera {
     pub fn ray(&self, film: DVec2) -> Ray {
         let (x, y) = (2.0 * film.x - 1.0, 1.0 - 2.0 * film.y);
         let direction = (self.forward + self.half_right * x + self.half_up * y).normalize();
-        Ray {
-            origin: self.eye,
-            direction,
-            t_min: 0.0,
-            t_max: f64::INFINITY,
-        }
+        Ray::new(self.eye, direction)
     }
 
     /// Where the camera stands, in metres.

@@ -3,9 +3,11 @@
 pub mod angle;
 pub mod bounds;
 pub mod frame;
+pub mod functions;
 pub mod ray;
+pub mod sum;
 pub mod tolerance;
 pub mod warp;
 
 pub use bounds::Bounds3;
-pub use ray::Ray;
+pub use ray::{PrimitiveId, Ray};
