@@ -4,32 +4,9 @@
 use crate::diag::Span;
 use crate::graph::pattern::{EdgeKind, EdgeWay, Pattern};
 use crate::graph::{FieldId, TypeId, TypeTable};
-use crate::library::{ClassId, ConstructorId, FunctionId, MethodId as LibraryMethodId};
+use crate::library::{ConstructorId, FunctionId, MethodId as LibraryMethodId};
 
-/// The static type of an expression.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-#[allow(missing_docs, reason = "the names are Java's own")]
-pub enum Type {
-    Void,
-    /// The type of `null`.
-    Null,
-    Boolean,
-    Byte,
-    Short,
-    Char,
-    Int,
-    Long,
-    Float,
-    Double,
-    String,
-    /// A node of this type or of one that extends it.
-    Node(TypeId),
-    /// A library class.
-    Class(ClassId),
-    Array(Box<Type>),
-    /// `Object`: anything, boxed.
-    Object,
-}
+pub use crate::library::Type;
 
 /// Number of a local variable in its frame. Slot 0 is `this` where there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

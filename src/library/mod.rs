@@ -1,14 +1,20 @@
-//! Table of the language's functions and classes: names, signatures, meaning. No behaviour.
+//! The functions, classes and constants of the language, as tables: names, signatures, effects, meaning. No behaviour.
+//!
+//! Every overload is a variant of an enum ([`FunctionId`], [`ConstructorId`], [`MethodId`]), so that `eval`, which implements
+//! them, cannot forget one; `check` finds them by name, and the language reference is generated from the same rows.
 
-/// A function of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct FunctionId(pub u16);
-/// A class of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ClassId(pub u16);
-/// A constructor of a class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct ConstructorId(pub u16);
-/// A method or public member of a class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MethodId(pub u16);
+mod classes;
+mod constants;
+mod constructors;
+mod functions;
+mod methods;
+mod signature;
+mod types;
+
+pub use classes::ClassId;
+pub use constants::{ConstantValue, LibraryConstant, constant, constants};
+pub use constructors::{ConstructorId, constructors_of};
+pub use functions::{FunctionId, functions_named};
+pub use methods::{LibraryField, MethodId, field_named, methods_named};
+pub use signature::{Effect, Signature};
+pub use types::{Type, ValueType};

@@ -1,0 +1,88 @@
+//! Constructors of library classes. A class without rows of its own takes its parent's: the type of the `new` expression
+//! tells which class is made.
+
+use std::sync::LazyLock;
+
+use super::ValueType::{Boolean, Char, Class, Double, Float, Int, Long, String, Void};
+use super::signature::{Index, index, signatures};
+use super::{ClassId, Effect, Signature};
+
+signatures! {
+    /// A constructor of a library class: one per overload.
+    ConstructorId;
+    Tuple = "Tuple3d"."new"() -> Void, Pure, "", "All zero.";
+    TupleOf = "Tuple3d"."new"(Double, Double, Double) -> Void, Pure, "", "From x, y, z.";
+    TupleCopy = "Tuple3d"."new"(Class(ClassId::Tuple3d)) -> Void, Pure, "", "A copy.";
+    RgbColor = "RGBColor"."new"(Float, Float, Float) -> Void, Pure, "0..=1", "From red, green, blue.";
+    Graytone = "Graytone"."new"(Float) -> Void, Pure, "0..=1", "A gray.";
+    Shader = "RGBAShader"."new"() -> Void, Pure, "", "Half gray, opaque.";
+    ShaderRgb = "RGBAShader"."new"(Float, Float, Float) -> Void, Pure, "0..=1", "From red, green, blue; opaque.";
+    ShaderRgba = "RGBAShader"."new"(Float, Float, Float, Float) -> Void, Pure, "0..=1", "From red, green, blue, alpha.";
+    Phong = "Phong"."new"() -> Void, Pure, "", "Half gray, matt.";
+    PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";
+    SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
+    DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 1 W/m².";
+    AreaLight = "AreaLight"."new"() -> Void, Pure, "", "White, 100 W.";
+    Sky = "Sky"."new"() -> Void, Pure, "", "White, 1 W/m².";
+    LightModel = "LightModel"."new"() -> Void, Pure, "", "Default numbers of rays and reflections.";
+    LightModelOf = "LightModel"."new"(Int, Int) -> Void, Pure, "", "From numbers of rays and of reflections.";
+    Random = "Random"."new"() -> Void, Random, "", "Seeded from the model's generator.";
+    RandomSeed = "Random"."new"(Long) -> Void, Pure, "", "With this seed.";
+    Integer = "Integer"."new"(Int) -> Void, Pure, "", "Boxed.";
+    Long = "Long"."new"(Long) -> Void, Pure, "", "Boxed.";
+    Float = "Float"."new"(Double) -> Void, Pure, "", "Boxed.";
+    Double = "Double"."new"(Double) -> Void, Pure, "", "Boxed.";
+    Boolean = "Boolean"."new"(Boolean) -> Void, Pure, "", "Boxed.";
+    Character = "Character"."new"(Char) -> Void, Pure, "", "Boxed.";
+    List = "List"."new"() -> Void, Pure, "", "Empty.";
+    ListCapacity = "List"."new"(Int) -> Void, Pure, "", "Empty, with room.";
+    ListCopy = "List"."new"(Class(ClassId::Collection)) -> Void, Pure, "", "The same elements.";
+    Map = "Map"."new"() -> Void, Pure, "", "Empty.";
+    Buffer = "StringBuffer"."new"() -> Void, Pure, "", "Empty.";
+    BufferText = "StringBuffer"."new"(String) -> Void, Pure, "", "With this text.";
+    Builder = "StringBuilder"."new"() -> Void, Pure, "", "Empty.";
+    BuilderText = "StringBuilder"."new"(String) -> Void, Pure, "", "With this text.";
+    Throwable = "Throwable"."new"() -> Void, Pure, "", "Without a message.";
+    ThrowableText = "Throwable"."new"(String) -> Void, Pure, "", "With a message.";
+    String = "String"."new"() -> Void, Pure, "", "Empty text.";
+    StringCopy = "String"."new"(String) -> Void, Pure, "", "The same text.";
+}
+
+static BY_NAME: LazyLock<Index<ConstructorId>> =
+    LazyLock::new(|| index(ConstructorId::ALL, ConstructorId::signature));
+
+/// The constructors of a class, its parent's where it has none of its own; empty for what only others make.
+pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
+    if [
+        ClassId::List,
+        ClassId::Collection,
+        ClassId::Map,
+        ClassId::Tuple3d,
+        ClassId::Spectrum3d,
+    ]
+    .contains(&class)
+    {
+        return &[];
+    }
+    class
+        .lineage()
+        .map(|c| BY_NAME.get(c.name(), "new"))
+        .find(|found| !found.is_empty())
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_without_rows_takes_its_parents() {
+        assert_eq!(constructors_of(ClassId::Vector3d).len(), 3);
+        assert_eq!(constructors_of(ClassId::ArithmeticException).len(), 2);
+        assert_eq!(
+            constructors_of(ClassId::SpotLight),
+            [ConstructorId::SpotLight]
+        );
+        assert!(constructors_of(ClassId::Shader).is_empty());
+    }
+}

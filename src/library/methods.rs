@@ -1,0 +1,249 @@
+//! Methods and public fields of library objects and of `String`. Operators between vectors are methods named `+`, `-`, `*`.
+
+use std::sync::LazyLock;
+
+use super::ValueType::{
+    Boolean, Char, CharArray, Class, Double, Float, Int, Long, Node, Object, String, StringArray,
+    Text, Void,
+};
+use super::signature::{Index, index, signatures};
+use super::{ClassId, Effect, Signature, ValueType};
+
+const TUPLE: ValueType = Class(ClassId::Tuple3d);
+const VECTOR: ValueType = Class(ClassId::Vector3d);
+const POINT: ValueType = Class(ClassId::Point3d);
+const MAP: ValueType = Class(ClassId::ChannelMap);
+const COLLECTION: ValueType = Class(ClassId::Collection);
+const COLOR: ValueType = Class(ClassId::RGBColor);
+const SPECTRUM: ValueType = Class(ClassId::Spectrum3d);
+
+signatures! {
+    /// A method of a library class: one per overload.
+    MethodId;
+    ObjectEquals = "Object"."equals"(Object) -> Boolean, Pure, "", "Whether both are equal.";
+    ObjectToString = "Object"."toString"() -> String, Pure, "", "Its text.";
+    ObjectHashCode = "Object"."hashCode"() -> Int, Pure, "", "A number that equal objects share.";
+
+    StringLength = "String"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
+    StringCharAt = "String"."charAt"(Int) -> Char, Pure, "", "Character at an index from 0.";
+    StringSubstring = "String"."substring"(Int) -> String, Pure, "", "From an index to the end.";
+    StringSubstringTo = "String"."substring"(Int, Int) -> String, Pure, "", "From an index up to another.";
+    StringIndexOf = "String"."indexOf"(String) -> Int, Pure, "", "First place of a text, -1 if none.";
+    StringIndexOfFrom = "String"."indexOf"(String, Int) -> Int, Pure, "", "First place of a text from an index on, -1 if none.";
+    StringIndexOfChar = "String"."indexOf"(Char) -> Int, Pure, "", "First place of a character, -1 if none.";
+    StringLastIndexOf = "String"."lastIndexOf"(String) -> Int, Pure, "", "Last place of a text, -1 if none.";
+    StringEqualsIgnoreCase = "String"."equalsIgnoreCase"(String) -> Boolean, Pure, "", "Equal but for case.";
+    StringCompareTo = "String"."compareTo"(String) -> Int, Pure, "", "Below, at or above 0 as it stands before, at or after.";
+    StringToUpperCase = "String"."toUpperCase"() -> String, Pure, "", "In capitals.";
+    StringToLowerCase = "String"."toLowerCase"() -> String, Pure, "", "In small letters.";
+    StringTrim = "String"."trim"() -> String, Pure, "", "Without white space at both ends.";
+    StringStartsWith = "String"."startsWith"(String) -> Boolean, Pure, "", "Whether it begins so.";
+    StringEndsWith = "String"."endsWith"(String) -> Boolean, Pure, "", "Whether it ends so.";
+    StringContains = "String"."contains"(String) -> Boolean, Pure, "", "Whether a text occurs in it.";
+    StringReplace = "String"."replace"(String, String) -> String, Pure, "", "With every occurrence replaced.";
+    StringReplaceChar = "String"."replace"(Char, Char) -> String, Pure, "", "With every occurrence replaced.";
+    StringIsEmpty = "String"."isEmpty"() -> Boolean, Pure, "", "Whether its length is 0.";
+    StringSplit = "String"."split"(String) -> StringArray, Pure, "", "Parts between occurrences of a separator.";
+    StringConcat = "String"."concat"(String) -> String, Pure, "", "With a text appended.";
+    StringToCharArray = "String"."toCharArray"() -> CharArray, Pure, "", "Its characters.";
+
+    TupleX = "Tuple3d"."x"() -> Double, Pure, "", "First coordinate.";
+    TupleY = "Tuple3d"."y"() -> Double, Pure, "", "Second coordinate.";
+    TupleZ = "Tuple3d"."z"() -> Double, Pure, "", "Third coordinate.";
+    TupleSetX = "Tuple3d"."x="(Double) -> Void, Writes, "", "Sets the first coordinate.";
+    TupleSetY = "Tuple3d"."y="(Double) -> Void, Writes, "", "Sets the second coordinate.";
+    TupleSetZ = "Tuple3d"."z="(Double) -> Void, Writes, "", "Sets the third coordinate.";
+    TupleSet = "Tuple3d"."set"(Double, Double, Double) -> Void, Writes, "", "Sets all three.";
+    TupleSetTuple = "Tuple3d"."set"(TUPLE) -> Void, Writes, "", "Copies.";
+    TupleAdd = "Tuple3d"."add"(TUPLE) -> Void, Writes, "", "Adds to it.";
+    TupleAddOf = "Tuple3d"."add"(TUPLE, TUPLE) -> Void, Writes, "", "Becomes the sum.";
+    TupleSub = "Tuple3d"."sub"(TUPLE) -> Void, Writes, "", "Subtracts from it.";
+    TupleSubOf = "Tuple3d"."sub"(TUPLE, TUPLE) -> Void, Writes, "", "Becomes the difference.";
+    TupleScale = "Tuple3d"."scale"(Double) -> Void, Writes, "", "Multiplies it.";
+    TupleScaleOf = "Tuple3d"."scale"(Double, TUPLE) -> Void, Writes, "", "Becomes the multiple.";
+    TupleScaleAdd = "Tuple3d"."scaleAdd"(Double, TUPLE, TUPLE) -> Void, Writes, "", "Becomes s a + b.";
+    TupleNegate = "Tuple3d"."negate"() -> Void, Writes, "", "Turns it round.";
+    TupleInterpolate = "Tuple3d"."interpolate"(TUPLE, Double) -> Void, Writes, "", "Moves it towards another by a fraction.";
+    VectorLength = "Vector3d"."length"() -> Double, Pure, "", "Its length.";
+    VectorLengthSquared = "Vector3d"."lengthSquared"() -> Double, Pure, "", "Its length squared.";
+    VectorNormalize = "Vector3d"."normalize"() -> Void, Writes, "", "Makes its length 1.";
+    VectorNormalizeOf = "Vector3d"."normalize"(VECTOR) -> Void, Writes, "", "Becomes another of length 1.";
+    VectorDot = "Vector3d"."dot"(VECTOR) -> Double, Pure, "", "Scalar product.";
+    VectorCross = "Vector3d"."cross"(VECTOR, VECTOR) -> Void, Writes, "", "Becomes the vector product.";
+    VectorAngle = "Vector3d"."angle"(VECTOR) -> Double, Pure, "radians", "Angle between both, 0 to π.";
+    PointDistance = "Point3d"."distance"(POINT) -> Double, Pure, "m", "Distance.";
+    PointDistanceSquared = "Point3d"."distanceSquared"(POINT) -> Double, Pure, "m²", "Squared distance.";
+    VectorPlus = "Vector3d"."+"(VECTOR) -> VECTOR, Pure, "", "Sum.";
+    PointPlus = "Point3d"."+"(VECTOR) -> POINT, Pure, "", "The point moved.";
+    VectorMinus = "Vector3d"."-"(VECTOR) -> VECTOR, Pure, "", "Difference.";
+    PointMinusPoint = "Point3d"."-"(POINT) -> VECTOR, Pure, "", "Vector from the second to the first.";
+    PointMinusVector = "Point3d"."-"(VECTOR) -> POINT, Pure, "", "The point moved back.";
+    VectorTimes = "Vector3d"."*"(Double) -> VECTOR, Pure, "", "Multiple.";
+    VectorTimesVector = "Vector3d"."*"(VECTOR) -> Double, Pure, "", "Scalar product.";
+    VectorOver = "Vector3d"."/"(Double) -> VECTOR, Pure, "", "Fraction.";
+    SpectrumIntegrate = "Spectrum3d"."integrate"() -> Double, Pure, "W", "Sum over red, green and blue.";
+
+    ShaderAverageColor = "Shader"."getAverageColor"() -> Int, Pure, "", "Colour as `0xAARRGGBB`.";
+    ShaderRed = "RGBAShader"."x"() -> Float, Pure, "0..=1", "Red.";
+    ShaderGreen = "RGBAShader"."y"() -> Float, Pure, "0..=1", "Green.";
+    ShaderBlue = "RGBAShader"."z"() -> Float, Pure, "0..=1", "Blue.";
+    ShaderAlpha = "RGBAShader"."w"() -> Float, Pure, "0..=1", "Alpha.";
+    ShaderSetRed = "RGBAShader"."x="(Float) -> Void, Writes, "0..=1", "Sets red.";
+    ShaderSetGreen = "RGBAShader"."y="(Float) -> Void, Writes, "0..=1", "Sets green.";
+    ShaderSetBlue = "RGBAShader"."z="(Float) -> Void, Writes, "0..=1", "Sets blue.";
+    ShaderSetAlpha = "RGBAShader"."w="(Float) -> Void, Writes, "0..=1", "Sets alpha.";
+    PhongSetDiffuse = "Phong"."setDiffuse"(MAP) -> Void, Writes, "0..=1", "Diffuse reflectance.";
+    PhongSetSpecular = "Phong"."setSpecular"(MAP) -> Void, Writes, "0..=1", "Glossy reflectance.";
+    PhongSetShininess = "Phong"."setShininess"(MAP) -> Void, Writes, "", "Sharpness of the gloss.";
+    PhongSetShininessValue = "Phong"."setShininess"(Float) -> Void, Writes, "", "Sharpness of the gloss.";
+    PhongSetTransparency = "Phong"."setTransparency"(MAP) -> Void, Writes, "0..=1", "Fraction that passes straight through.";
+    PhongSetDiffuseTransparency = "Phong"."setDiffuseTransparency"(MAP) -> Void, Writes, "0..=1", "Diffuse transmittance.";
+    PhongSetAmbient = "Phong"."setAmbient"(MAP) -> Void, Writes, "0..=1", "Colour without light; used by fast previews only.";
+    PhongSetEmissive = "Phong"."setEmissive"(MAP) -> Void, Writes, "0..=1", "Colour it shines with; used by fast previews only.";
+
+    LightSetColor = "Light"."setColor"(Float, Float, Float) -> Void, Writes, "0..=1", "Colour of the light.";
+    LightSetColorMap = "Light"."setColor"(COLOR) -> Void, Writes, "0..=1", "Colour of the light.";
+    LightSetShadowless = "Light"."setShadowless"(Boolean) -> Void, Writes, "", "Whether it casts no shadows; used by fast previews only.";
+    PointLightSetPower = "PointLight"."setPower"(Float) -> Void, Writes, "W", "Power, the sum over red, green and blue.";
+    SpotLightSetInnerAngle = "SpotLight"."setInnerAngle"(Float) -> Void, Writes, "radians", "Half angle of full brightness.";
+    SpotLightSetOuterAngle = "SpotLight"."setOuterAngle"(Float) -> Void, Writes, "radians", "Half angle of the cone.";
+    DirectionalLightSetPowerDensity = "DirectionalLight"."setPowerDensity"(Float) -> Void, Writes, "W/m²", "Power per area, the sum over red, green and blue.";
+    AreaLightSetPower = "AreaLight"."setPower"(Float) -> Void, Writes, "W", "Power, the sum over red, green and blue.";
+    AreaLightSetExponent = "AreaLight"."setExponent"(Float) -> Void, Writes, "", "Exponent of the cosine by which it shines.";
+    SkySetPowerDensity = "Sky"."setPowerDensity"(Float) -> Void, Writes, "W/m²", "Power per area, the sum over red, green and blue.";
+    LightModelSetSeed = "LightModel"."setSeed"(Long) -> Void, Writes, "", "Seed of its rays.";
+    LightModelSetRayCount = "LightModel"."setRayCount"(Int) -> Void, Writes, "", "Number of rays.";
+    LightModelSetDepth = "LightModel"."setDepth"(Int) -> Void, Writes, "", "Number of reflections.";
+    LightModelCompute = "LightModel"."compute"() -> Void, Writes, "", "Traces the light.";
+    LightModelAbsorbedPower = "LightModel"."getAbsorbedPower"(Node) -> SPECTRUM, Graph, "W", "Power that the node absorbs.";
+    LightModelAbsorbedPower3d = "LightModel"."getAbsorbedPower3d"(Node) -> SPECTRUM, Graph, "W", "Power that the node absorbs.";
+
+    RandomSetSeed = "Random"."setSeed"(Long) -> Void, Writes, "", "Starts it anew.";
+    RandomNextInt = "Random"."nextInt"() -> Int, Writes, "", "Any int.";
+    RandomNextIntBelow = "Random"."nextInt"(Int) -> Int, Writes, "", "Uniform in 0..n.";
+    RandomNextLong = "Random"."nextLong"() -> Long, Writes, "", "Any long.";
+    RandomNextFloat = "Random"."nextFloat"() -> Float, Writes, "", "Uniform in [0, 1).";
+    RandomNextDouble = "Random"."nextDouble"() -> Double, Writes, "", "Uniform in [0, 1).";
+    RandomNextBoolean = "Random"."nextBoolean"() -> Boolean, Writes, "", "True or false.";
+    RandomNextGaussian = "Random"."nextGaussian"() -> Double, Writes, "", "Normal with mean 0 and standard deviation 1.";
+
+    NumberIntValue = "Number"."intValue"() -> Int, Pure, "", "As int.";
+    NumberLongValue = "Number"."longValue"() -> Long, Pure, "", "As long.";
+    NumberFloatValue = "Number"."floatValue"() -> Float, Pure, "", "As float.";
+    NumberDoubleValue = "Number"."doubleValue"() -> Double, Pure, "", "As double.";
+    BooleanValue = "Boolean"."booleanValue"() -> Boolean, Pure, "", "Unboxed.";
+    CharacterValue = "Character"."charValue"() -> Char, Pure, "", "Unboxed.";
+
+    CollectionSize = "Collection"."size"() -> Int, Pure, "", "Number of elements.";
+    CollectionIsEmpty = "Collection"."isEmpty"() -> Boolean, Pure, "", "Whether there is none.";
+    CollectionContains = "Collection"."contains"(Object) -> Boolean, Pure, "", "Whether an equal one is in it.";
+    ListAdd = "List"."add"(Object) -> Boolean, Writes, "", "Appends.";
+    ListInsert = "List"."add"(Int, Object) -> Void, Writes, "", "Inserts at an index.";
+    ListAddAll = "List"."addAll"(COLLECTION) -> Boolean, Writes, "", "Appends all.";
+    ListGet = "List"."get"(Int) -> Object, Pure, "", "Element at an index from 0.";
+    ListSet = "List"."set"(Int, Object) -> Object, Writes, "", "Replaces an element, gives the old one.";
+    ListRemoveAt = "List"."remove"(Int) -> Object, Writes, "", "Removes and gives the element at an index.";
+    ListRemove = "List"."remove"(Object) -> Boolean, Writes, "", "Removes the first equal element.";
+    ListIndexOf = "List"."indexOf"(Object) -> Int, Pure, "", "Index of the first equal element, -1 if none.";
+    ListClear = "List"."clear"() -> Void, Writes, "", "Removes all.";
+    MapPut = "Map"."put"(Object, Object) -> Object, Writes, "", "Stores under a key, gives the old value.";
+    MapGet = "Map"."get"(Object) -> Object, Pure, "", "Value of a key, null if none.";
+    MapContainsKey = "Map"."containsKey"(Object) -> Boolean, Pure, "", "Whether the key has a value.";
+    MapRemove = "Map"."remove"(Object) -> Object, Writes, "", "Removes a key, gives its value.";
+    MapSize = "Map"."size"() -> Int, Pure, "", "Number of keys.";
+    MapIsEmpty = "Map"."isEmpty"() -> Boolean, Pure, "", "Whether there is no key.";
+    MapClear = "Map"."clear"() -> Void, Writes, "", "Removes all.";
+    MapKeySet = "Map"."keySet"() -> COLLECTION, Pure, "", "The keys, in order of insertion.";
+    MapValues = "Map"."values"() -> COLLECTION, Pure, "", "The values, in order of insertion of their keys.";
+
+    BufferAppend = "StringBuffer"."append"(Text) -> Class(ClassId::StringBuffer), Writes, "", "Appends the text of a value.";
+    BufferLength = "StringBuffer"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
+    BuilderAppend = "StringBuilder"."append"(Text) -> Class(ClassId::StringBuilder), Writes, "", "Appends the text of a value.";
+    BuilderLength = "StringBuilder"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
+
+    ThrowableMessage = "Throwable"."getMessage"() -> String, Pure, "", "Its message.";
+    ThrowablePrintStackTrace = "Throwable"."printStackTrace"() -> Void, Prints, "", "Prints it.";
+}
+
+static BY_NAME: LazyLock<Index<MethodId>> =
+    LazyLock::new(|| index(MethodId::ALL, MethodId::signature));
+
+/// The overloads of a method that the class `owner` (or `String`, `Object`) declares itself; callers walk up the lineage.
+pub fn methods_named(owner: &str, name: &str) -> &'static [MethodId] {
+    BY_NAME.get(owner, name)
+}
+
+/// A public field of a library class.
+#[derive(Clone, Copy, Debug)]
+pub struct LibraryField {
+    /// Reads it.
+    pub getter: MethodId,
+    /// Writes it.
+    pub setter: MethodId,
+}
+
+/// The public field `name` of a class or of what it extends.
+pub fn field_named(class: ClassId, name: &str) -> Option<LibraryField> {
+    let &(_, getter, setter) = FIELDS
+        .iter()
+        .find(|(owner, getter, _)| class.is_a(*owner) && getter.signature().name == name)?;
+    Some(LibraryField { getter, setter })
+}
+
+/// Class, getter, setter of every public field; the getter's name is the field's.
+static FIELDS: &[(ClassId, MethodId, MethodId)] = &[
+    (ClassId::Tuple3d, MethodId::TupleX, MethodId::TupleSetX),
+    (ClassId::Tuple3d, MethodId::TupleY, MethodId::TupleSetY),
+    (ClassId::Tuple3d, MethodId::TupleZ, MethodId::TupleSetZ),
+    (
+        ClassId::RGBAShader,
+        MethodId::ShaderRed,
+        MethodId::ShaderSetRed,
+    ),
+    (
+        ClassId::RGBAShader,
+        MethodId::ShaderGreen,
+        MethodId::ShaderSetGreen,
+    ),
+    (
+        ClassId::RGBAShader,
+        MethodId::ShaderBlue,
+        MethodId::ShaderSetBlue,
+    ),
+    (
+        ClassId::RGBAShader,
+        MethodId::ShaderAlpha,
+        MethodId::ShaderSetAlpha,
+    ),
+];
+
+impl MethodId {
+    /// Whether it is a public field's getter or setter, or an operator: not callable by name.
+    pub fn is_hidden(self) -> bool {
+        let is_operator = !self
+            .signature()
+            .name
+            .starts_with(|c: char| c.is_alphabetic());
+        is_operator
+            || FIELDS
+                .iter()
+                .any(|&(_, getter, setter)| self == getter || self == setter)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_inherited() {
+        let x = field_named(ClassId::Spectrum3d, "x").map(|f| f.getter);
+        assert_eq!(x, Some(MethodId::TupleX));
+        assert!(field_named(ClassId::Random, "x").is_none());
+        assert!(
+            MethodId::TupleX.is_hidden()
+                && MethodId::VectorPlus.is_hidden()
+                && !MethodId::ListAdd.is_hidden()
+        );
+    }
+}
