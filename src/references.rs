@@ -10,3 +10,9 @@
 //! # Shirley1997
 //! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.
 //! <https://doi.org/10.1080/10867651.1997.10487479>
+//!
+//! # FNV
+//! G. Fowler, L. C. Noll, K.-P. Vo: FNV hash. <http://www.isthe.com/chongo/tech/comp/fnv/>
+//!
+//! # PNG3
+//! W3C: Portable Network Graphics (PNG) Specification (Third Edition), 2025. <https://www.w3.org/TR/png-3/>

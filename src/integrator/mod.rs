@@ -1,1 +1,5 @@
 //! (to be written)
+
+pub mod cancel;
+
+pub use cancel::CancelToken;

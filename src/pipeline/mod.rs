@@ -1,1 +1,10 @@
-//! (to be written)
+//! From a model on disk to a picture on disk: the stages, what each depends on, and all contact with the machine.
+//!
+//! read → check → derive → describe → build → prepare → view → write. Each stage is keyed by what it depends on (texts,
+//! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed.
+
+pub mod content_hash;
+pub mod failure;
+pub mod sources;
+pub mod store;
+pub mod world;

@@ -1,0 +1,160 @@
+//! The texts of a run: the model's files and the file beside them.
+
+use super::content_hash::ContentHash;
+use super::failure::Failure;
+use super::world::{Entry, World};
+use crate::diag::{Diagnostic, FileId, Severity, SourceMap};
+use crate::options::Options;
+use std::path::{Path, PathBuf};
+
+/// Everything that was read for a run.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    /// The texts.
+    pub map: SourceMap,
+    /// The files of the model, in the order of their names.
+    pub models: Vec<FileId>,
+    /// The file beside it, if there is one.
+    pub sidecar: Option<FileId>,
+    /// Equal for equal names and texts of the model's files.
+    pub model_hash: ContentHash,
+}
+
+/// Where the parts of a model are, found but not read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inputs {
+    /// The files of the model, sorted.
+    pub models: Vec<PathBuf>,
+    /// The file beside it, if there is one.
+    pub sidecar: Option<PathBuf>,
+}
+
+impl Inputs {
+    /// Finds the files of `model`, a `.rgg` file or a folder of them.
+    ///
+    /// # Errors
+    /// If there is no such model.
+    pub fn find(world: &dyn World, model: &Path) -> Result<Self, Failure> {
+        let has_suffix = |path: &Path, suffix: &str| path.extension().is_some_and(|e| e == suffix);
+        match world.entry(model) {
+            Entry::Folder => {
+                let all = world
+                    .list(model)
+                    .map_err(|e| Failure::file("read", model, &e))?;
+                let with = |suffix: &str| -> Vec<PathBuf> {
+                    all.iter()
+                        .filter(|path| has_suffix(path, suffix))
+                        .cloned()
+                        .collect()
+                };
+                let (models, mut sidecars) = (with("rgg"), with("toml"));
+                if models.is_empty() {
+                    let name = model.display();
+                    return Err(Failure::World(format!(
+                        "folder `{name}` holds no `.rgg` file"
+                    )));
+                }
+                if sidecars.len() > 1 {
+                    let name = model.display();
+                    let message = format!("folder `{name}` holds more than one `.toml` file");
+                    return Err(Failure::World(message));
+                }
+                Ok(Self {
+                    models,
+                    sidecar: sidecars.pop(),
+                })
+            }
+            _ if !has_suffix(model, "rgg") => {
+                let name = model.display();
+                Err(Failure::Usage(format!(
+                    "`{name}` is neither a `.rgg` file nor a folder"
+                )))
+            }
+            Entry::File | Entry::Missing => {
+                let beside = model.with_extension("toml");
+                let sidecar = (world.entry(&beside) == Entry::File).then_some(beside);
+                Ok(Self {
+                    models: vec![model.to_owned()],
+                    sidecar,
+                })
+            }
+        }
+    }
+
+    /// Reads them all.
+    ///
+    /// # Errors
+    /// If one cannot be read, or is no text.
+    pub fn read(&self, world: &dyn World) -> Result<Sources, Failure> {
+        let mut map = SourceMap::default();
+        let mut read = |path: &PathBuf| -> Result<FileId, Failure> {
+            let content = world
+                .read(path)
+                .map_err(|e| Failure::file("read", path, &e))?;
+            let text = String::from_utf8(content).map_err(|error| {
+                let at = error.utf8_error().valid_up_to();
+                let message = format!("`{}` is not UTF-8 text (byte {at})", path.display());
+                Failure::model(&SourceMap::default(), placeless("not-text", message))
+            })?;
+            Ok(map.add(path.display().to_string(), text))
+        };
+        let models = self
+            .models
+            .iter()
+            .map(&mut read)
+            .collect::<Result<Vec<_>, _>>()?;
+        let sidecar = self.sidecar.as_ref().map(&mut read).transpose()?;
+        let names = self.models.iter().filter_map(|path| path.file_name());
+        let texts = models.iter().filter_map(|&id| map.file(id));
+        let parts: Vec<(String, &str)> = names
+            .zip(texts)
+            .map(|(name, file)| (name.to_string_lossy().into_owned(), &*file.text))
+            .collect();
+        let model_hash = ContentHash::of(
+            parts
+                .iter()
+                .flat_map(|(name, text)| [name.as_bytes(), text.as_bytes()]),
+        );
+        Ok(Sources {
+            map,
+            models,
+            sidecar,
+            model_hash,
+        })
+    }
+}
+
+impl Sources {
+    /// The options of the run: `flags` over the file beside the model over the preset over the defaults.
+    ///
+    /// # Errors
+    /// If the file beside the model is wrong.
+    pub fn options(&self, flags: &Options) -> Result<Options, Failure> {
+        let mut options = flags.clone();
+        if let Some(id) = self.sidecar {
+            let text = self.map.file(id).map_or("", |file| &file.text);
+            let found = options.read_sidecar(id, text);
+            if found.has_errors() {
+                return Err(Failure::Model {
+                    sources: self.map.clone(),
+                    found,
+                });
+            }
+        }
+        options.apply_preset();
+        Ok(options)
+    }
+}
+
+/// An error without a place.
+pub(super) fn placeless(slug: &'static str, message: String) -> Diagnostic {
+    Diagnostic {
+        severity: Severity::Error,
+        slug,
+        message,
+        primary: None,
+        secondary: vec![],
+        hints: vec![],
+        trace: vec![],
+    }
+}

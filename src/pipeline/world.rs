@@ -1,0 +1,222 @@
+//! All that a run needs of the machine: files, the clock, memory.
+
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// No model file is larger than this many bytes: 256 MiB.
+const LARGEST_FILE: u64 = 1 << 28;
+
+/// What a path leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// Nothing.
+    Missing,
+    /// A file (or something that can be read like one).
+    File,
+    /// A folder.
+    Folder,
+}
+
+/// The machine as the pipeline sees it. Tests have their own.
+pub trait World: Sync {
+    /// What `path` leads to.
+    fn entry(&self, path: &Path) -> Entry;
+
+    /// The content of a file.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is absurdly large.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The first `n` bytes of a file, fewer if it is shorter.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>>;
+
+    /// What a folder holds, sorted by name.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>>;
+
+    /// Makes sure that there is such a folder.
+    ///
+    /// # Errors
+    /// If there is none and none can be made.
+    fn create_folder(&self, folder: &Path) -> io::Result<()>;
+
+    /// Whether files can be made in `folder`.
+    ///
+    /// # Errors
+    /// Why not.
+    fn try_folder(&self, folder: &Path) -> io::Result<()>;
+
+    /// Puts a file in the place of `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// If it cannot be written; then `path` is as it was.
+    fn replace(&self, path: &Path, content: &[u8]) -> io::Result<()>;
+
+    /// Time since the world began.
+    fn now(&self) -> Duration;
+
+    /// The most memory this process ever held, in bytes, if the system tells.
+    fn peak_memory(&self) -> Option<u64>;
+
+    /// Memory that could still be used, in bytes, if the system tells.
+    fn free_memory(&self) -> Option<u64>;
+}
+
+/// The machine itself.
+#[derive(Debug)]
+pub struct Machine {
+    start: Instant,
+}
+
+impl Machine {
+    /// The machine, its clock starting now.
+    pub fn new() -> Self {
+        Self {
+            start: Instant::now(),
+        }
+    }
+}
+
+impl Default for Machine {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl World for Machine {
+    fn entry(&self, path: &Path) -> Entry {
+        match std::fs::metadata(path) {
+            Ok(data) if data.is_dir() => Entry::Folder,
+            Ok(_) => Entry::File,
+            Err(_) => Entry::Missing,
+        }
+    }
+
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let mut content = Vec::new();
+        std::fs::File::open(path)?
+            .take(LARGEST_FILE + 1)
+            .read_to_end(&mut content)?;
+        if content.len() as u64 > LARGEST_FILE {
+            return Err(io::Error::other("it is larger than 256 MiB"));
+        }
+        Ok(content)
+    }
+
+    fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
+        let mut content = Vec::new();
+        std::fs::File::open(path)?
+            .take(n as u64)
+            .read_to_end(&mut content)?;
+        Ok(content)
+    }
+
+    fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+        let entries = std::fs::read_dir(folder)?;
+        let mut paths = entries
+            .map(|e| Ok(e?.path()))
+            .collect::<io::Result<Vec<PathBuf>>>()?;
+        paths.sort();
+        Ok(paths)
+    }
+
+    fn create_folder(&self, folder: &Path) -> io::Result<()> {
+        std::fs::create_dir_all(folder)
+    }
+
+    fn try_folder(&self, folder: &Path) -> io::Result<()> {
+        temporary(folder).map(drop)
+    }
+
+    fn replace(&self, path: &Path, content: &[u8]) -> io::Result<()> {
+        let mut file = temporary(folder_of(path))?;
+        file.write_all(content)?;
+        file.as_file().sync_all()?;
+        file.persist(path).map_err(|error| error.error)?;
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    fn peak_memory(&self) -> Option<u64> {
+        kibibytes("/proc/self/status", "VmHWM:")
+    }
+
+    fn free_memory(&self) -> Option<u64> {
+        kibibytes("/proc/meminfo", "MemAvailable:")
+    }
+}
+
+/// The folder a file stands in.
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// A file that is gone when it is dropped, with the rights an ordinary new file has.
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".understory-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// A line of Linux's process file system, such as `VmHWM:  123 kB`, in bytes.
+fn kibibytes(file: &str, name: &str) -> Option<u64> {
+    let text = std::fs::read_to_string(file).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.trim()
+        .strip_suffix("kB")?
+        .trim()
+        .parse::<u64>()
+        .ok()?
+        .checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_whole_and_nothing_else_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let world = Machine::new();
+        assert_eq!(world.entry(&path), Entry::Missing);
+        world.try_folder(folder.path()).unwrap();
+        world.replace(&path, b"one").unwrap();
+        world.replace(&path, b"two").unwrap();
+        assert_eq!(world.read(&path).unwrap(), b"two");
+        assert_eq!(world.head(&path, 2).unwrap(), b"tw");
+        assert_eq!(world.list(folder.path()).unwrap(), [path]);
+        assert!(
+            world
+                .replace(&folder.path().join("no/b.png"), b"x")
+                .is_err()
+        );
+        assert!(world.try_folder(&folder.path().join("no")).is_err());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn linux_tells_its_memory() {
+        let world = Machine::new();
+        assert!(world.peak_memory() > Some(1 << 20));
+        assert!(world.free_memory() > Some(1 << 20));
+    }
+}
