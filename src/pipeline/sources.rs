@@ -158,3 +158,73 @@ pub(super) fn placeless(slug: &'static str, message: String) -> Diagnostic {
         trace: vec![],
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Origin;
+    use crate::pipeline::world::fake::FakeWorld;
+
+    fn find(world: &FakeWorld, model: &str) -> Result<Inputs, Failure> {
+        Inputs::find(world, Path::new(model))
+    }
+
+    #[test]
+    fn a_model_is_a_file_or_a_folder_with_or_without_something_beside_it() {
+        let world = FakeWorld::default();
+        for file in [
+            "a/one.rgg",
+            "a/two.rgg",
+            "a/a.toml",
+            "b/one.rgg",
+            "c/readme.txt",
+        ] {
+            world.put(file, "");
+        }
+        let inputs = find(&world, "a").unwrap();
+        assert_eq!(
+            inputs.models,
+            [Path::new("a/one.rgg"), Path::new("a/two.rgg")]
+        );
+        assert_eq!(inputs.sidecar.as_deref(), Some(Path::new("a/a.toml")));
+        assert_eq!(find(&world, "b/one.rgg").unwrap().sidecar, None);
+        assert!(matches!(find(&world, "c"), Err(Failure::World(_))));
+        assert!(matches!(
+            find(&world, "c/readme.txt"),
+            Err(Failure::Usage(_))
+        ));
+        let missing = find(&world, "c/none.rgg").unwrap().read(&world);
+        assert!(matches!(missing, Err(Failure::World(text)) if text.contains("c/none.rgg")));
+    }
+
+    #[test]
+    fn the_file_beside_the_model_wins_over_presets_and_loses_to_flags() {
+        let world = FakeWorld::default();
+        world.put("p.rgg", "");
+        world.put(
+            "p.toml",
+            "steps = 3\n[render]\nquality = \"draft\"\nmax-depth = 2\n",
+        );
+        let sources = find(&world, "p.rgg").unwrap().read(&world).unwrap();
+        let mut flags = Options::default();
+        flags.set("steps", "5", Origin::Flag).unwrap();
+        let options = sources.options(&flags).unwrap();
+        assert_eq!(options.steps.value, 5);
+        assert_eq!(
+            (options.samples.value.get(), options.max_depth.value),
+            (8, Some(2))
+        );
+    }
+
+    #[test]
+    fn the_hash_is_of_names_and_texts() {
+        let hash = |name: &str, text: &str| {
+            let world = FakeWorld::default();
+            world.put(name, text);
+            find(&world, name).unwrap().read(&world).unwrap().model_hash
+        };
+        assert_eq!(hash("here/p.rgg", "x"), hash("there/p.rgg", "x"));
+        assert_ne!(hash("p.rgg", "x"), hash("p.rgg", "y"));
+        assert_ne!(hash("p.rgg", "x"), hash("q.rgg", "x"));
+    }
+}

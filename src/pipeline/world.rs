@@ -189,6 +189,99 @@ fn kibibytes(file: &str, name: &str) -> Option<u64> {
 }
 
 #[cfg(test)]
+pub(crate) mod fake {
+    //! A machine that exists only in memory.
+
+    use super::{Entry, World};
+    use std::collections::BTreeMap;
+    use std::io;
+    use std::path::{Path, PathBuf};
+    use std::sync::Mutex;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    use std::time::Duration;
+
+    /// Files in memory, and a clock that goes on by 10 ms whenever somebody looks at it.
+    #[derive(Default)]
+    pub(crate) struct FakeWorld {
+        files: Mutex<BTreeMap<PathBuf, Vec<u8>>>,
+        ticks: AtomicU64,
+    }
+
+    impl FakeWorld {
+        /// Makes or changes a file.
+        pub(crate) fn put(&self, path: &str, content: &str) {
+            self.files
+                .lock()
+                .unwrap()
+                .insert(path.into(), content.into());
+        }
+    }
+
+    impl World for FakeWorld {
+        fn entry(&self, path: &Path) -> Entry {
+            let files = self.files.lock().unwrap();
+            if files.contains_key(path) {
+                Entry::File
+            } else if files.keys().any(|file| file.starts_with(path)) {
+                Entry::Folder
+            } else {
+                Entry::Missing
+            }
+        }
+
+        fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+            let files = self.files.lock().unwrap();
+            files
+                .get(path)
+                .cloned()
+                .ok_or_else(|| io::ErrorKind::NotFound.into())
+        }
+
+        fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
+            self.read(path)
+                .map(|content| content.into_iter().take(n).collect())
+        }
+
+        fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+            let files = self.files.lock().unwrap();
+            Ok(files
+                .keys()
+                .filter(|file| file.parent() == Some(folder))
+                .cloned()
+                .collect())
+        }
+
+        fn create_folder(&self, _: &Path) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn try_folder(&self, _: &Path) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn replace(&self, path: &Path, content: &[u8]) -> io::Result<()> {
+            self.files
+                .lock()
+                .unwrap()
+                .insert(path.into(), content.into());
+            Ok(())
+        }
+
+        fn now(&self) -> Duration {
+            Duration::from_millis(10 * self.ticks.fetch_add(1, Ordering::Relaxed))
+        }
+
+        fn peak_memory(&self) -> Option<u64> {
+            None
+        }
+
+        fn free_memory(&self) -> Option<u64> {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -1,0 +1,162 @@
+//! The loop of watching: events in, runs out.
+
+use super::desk::{Desk, Order};
+use super::snapshot::Snapshot;
+use crate::integrator::CancelToken;
+use crate::pipeline::world::World;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+
+/// What can happen while watching.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Something happened to a file of the model; perhaps its content changed.
+    Touched,
+    /// The run under way ended, one way or another.
+    RunFinished,
+    /// The user wants to stop.
+    Quit,
+}
+
+/// Who runs the model.
+pub trait Runner: Send {
+    /// Runs it once and tells the user how it went. `changed` names the files that gave reason to; empty at first.
+    ///
+    /// Ends early, without a word, when `cancel` is set.
+    fn run(&mut self, changed: &[String], cancel: &CancelToken);
+
+    /// The run before this call panicked: whatever it left half done is not to be trusted.
+    fn recover(&mut self);
+}
+
+struct Job {
+    changed: Vec<String>,
+    cancel: CancelToken,
+}
+
+/// Runs `model` now and after each change, until [`Event::Quit`] or the end of events.
+///
+/// `sender` is the other end of `events`.
+pub fn watch(
+    world: &dyn World,
+    model: &Path,
+    runner: &mut dyn Runner,
+    sender: Sender<Event>,
+    events: Receiver<Event>,
+) {
+    std::thread::scope(|scope| {
+        let (jobs, work) = channel::<Job>();
+        scope.spawn(move || {
+            for job in work {
+                let run = AssertUnwindSafe(|| runner.run(&job.changed, &job.cancel));
+                if catch_unwind(run).is_err() {
+                    runner.recover();
+                }
+                // Fails only when watching has ended.
+                let _ = sender.send(Event::RunFinished);
+            }
+        });
+        attend(world, model, &jobs, &events);
+    });
+}
+
+/// Owns the state; the only one to decide what is run.
+fn attend(world: &dyn World, model: &Path, jobs: &Sender<Job>, events: &Receiver<Event>) {
+    let mut cancel = CancelToken::default();
+    let start = |changed: Vec<String>, cancel: &CancelToken| {
+        jobs.send(Job {
+            changed,
+            cancel: cancel.clone(),
+        })
+        .expect("invariant: the worker lives as long as its jobs");
+    };
+    let mut desk = Desk::new(Snapshot::take(world, model), world.now());
+    start(Vec::new(), &cancel);
+    loop {
+        match events.recv_timeout(desk.patience(world.now())) {
+            Ok(Event::Touched) => desk.touched(world.now()),
+            Ok(Event::RunFinished) => desk.finished(world.now()),
+            Ok(Event::Quit) | Err(RecvTimeoutError::Disconnected) => {
+                cancel.cancel();
+                return;
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        if !desk.patience(world.now()).is_zero() {
+            continue;
+        }
+        match desk.look(Snapshot::take(world, model), world.now()) {
+            Order::Nothing => {}
+            Order::Cancel => cancel.cancel(),
+            Order::Start(changed) => {
+                cancel = CancelToken::default();
+                start(changed, &cancel);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::world::fake::FakeWorld;
+
+    /// Tells each run to the test, and does what the model's text says.
+    struct Puppet<'a> {
+        world: &'a FakeWorld,
+        runs: Sender<String>,
+    }
+
+    impl Runner for Puppet<'_> {
+        fn run(&mut self, changed: &[String], cancel: &CancelToken) {
+            let text = self.world.read(Path::new("m/p.rgg")).unwrap_or_default();
+            let text = String::from_utf8_lossy(&text).into_owned();
+            self.runs.send(format!("{text} {changed:?}")).unwrap();
+            match text.as_str() {
+                "panic" => panic!("the test asks for it"),
+                "forever" => {
+                    while !cancel.is_cancelled() {
+                        std::thread::yield_now();
+                    }
+                }
+                _ => {}
+            }
+        }
+
+        fn recover(&mut self) {
+            self.runs.send("recovered".into()).unwrap();
+        }
+    }
+
+    #[test]
+    fn changes_run_again_whatever_the_last_run_did() {
+        let world = FakeWorld::default();
+        world.put("m/p.rgg", "one");
+        let (runs, seen) = channel();
+        let (sender, events) = channel();
+        let mut puppet = Puppet {
+            world: &world,
+            runs,
+        };
+        std::thread::scope(|scope| {
+            let (world, events_in) = (&world, sender.clone());
+            let puppet = &mut puppet;
+            scope.spawn(move || watch(world, Path::new("m/p.rgg"), puppet, events_in, events));
+            let next = || seen.recv().unwrap();
+            let change = |text: &str| {
+                world.put("m/p.rgg", text);
+                sender.send(Event::Touched).unwrap();
+            };
+            assert_eq!(next(), "one []");
+            change("panic");
+            assert_eq!(next(), "panic [\"p.rgg\"]");
+            assert_eq!(next(), "recovered");
+            change("forever");
+            assert_eq!(next(), "forever [\"p.rgg\"]");
+            change("two");
+            assert_eq!(next(), "two [\"p.rgg\"]");
+            sender.send(Event::Quit).unwrap();
+        });
+    }
+}

@@ -1,0 +1,88 @@
+//! What the inputs of a model contain at one moment.
+
+use crate::pipeline::content_hash::ContentHash;
+use crate::pipeline::sources::Inputs;
+use crate::pipeline::world::World;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The content of each input, by path; `None` for one that cannot be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Snapshot {
+    contents: BTreeMap<PathBuf, Option<ContentHash>>,
+}
+
+impl Snapshot {
+    /// Looks at the inputs of `model` now.
+    pub fn take(world: &dyn World, model: &Path) -> Self {
+        let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs {
+            models: vec![model.to_owned()],
+            sidecar: None,
+        });
+        let read = |path: PathBuf| {
+            let hash = world
+                .read(&path)
+                .ok()
+                .map(|content| ContentHash::of([&content[..]]));
+            (path, hash)
+        };
+        Self {
+            contents: inputs
+                .models
+                .into_iter()
+                .chain(inputs.sidecar)
+                .map(read)
+                .collect(),
+        }
+    }
+
+    /// Whether an input is not there, as between the two halves of an editor's save.
+    pub fn is_torn(&self) -> bool {
+        self.contents.values().any(|hash| hash.is_none())
+    }
+
+    /// The names of files that differ between `earlier` and this.
+    pub fn changes_since(&self, earlier: &Self) -> Vec<String> {
+        let paths = self.contents.keys().chain(earlier.contents.keys());
+        let changed = paths.filter(|path| self.contents.get(*path) != earlier.contents.get(*path));
+        let mut names: Vec<String> = changed
+            .map(|path| {
+                path.file_name()
+                    .unwrap_or(path.as_os_str())
+                    .to_string_lossy()
+                    .into_owned()
+            })
+            .collect();
+        names.sort();
+        names.dedup();
+        names
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A snapshot of one file.
+    pub(in crate::watch) fn of(name: &str, content: Option<&str>) -> Snapshot {
+        let hash = content.map(|text| ContentHash::of([text.as_bytes()]));
+        Snapshot {
+            contents: [(PathBuf::from(name), hash)].into(),
+        }
+    }
+
+    #[test]
+    fn changed_new_and_lost_files_are_named() {
+        let old = of("d/plant.rgg", Some("a"));
+        assert!(of("d/plant.rgg", Some("a")).changes_since(&old).is_empty());
+        assert_eq!(
+            of("d/plant.rgg", Some("b")).changes_since(&old),
+            ["plant.rgg"]
+        );
+        assert_eq!(
+            of("d/tree.rgg", Some("a")).changes_since(&old),
+            ["plant.rgg", "tree.rgg"]
+        );
+        assert!(of("d/plant.rgg", None).is_torn() && !old.is_torn());
+    }
+}
