@@ -5,6 +5,8 @@ pub mod bounds;
 pub mod frame;
 pub mod functions;
 pub mod ray;
+pub mod rng;
+pub mod stats;
 pub mod sum;
 pub mod tolerance;
 pub mod warp;

@@ -1,0 +1,85 @@
+//! Random numbers as pure functions of counters: no state, no clock, no thread.
+//!
+//! Every number of a picture is a function of (seed, what it is for, which item, which dimension), so that it does not
+//! depend on who asks for it or when.
+
+/// Scrambles 64 bits so that every input bit reaches every output bit; a bijection.
+///
+/// The finalizer of `SplitMix64`, variant 13 of [Stafford2011](crate::references#stafford2011).
+#[must_use]
+pub const fn mix(mut x: u64) -> u64 {
+    x ^= x >> 30;
+    x = x.wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x ^= x >> 27;
+    x = x.wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+/// A 64-bit number that depends on every one of `keys` and on their order.
+#[must_use]
+pub fn hash(keys: &[u64]) -> u64 {
+    // The odd constant is 2^64 / golden ratio: keys that count 0, 1, 2 … start far apart.
+    keys.iter().fold(0x6A09_E667_F3BC_C908, |state, key| {
+        mix(state
+            .wrapping_add(key.wrapping_mul(0x9E37_79B9_7F4A_7C15))
+            .wrapping_add(0x632B_E59B_D9B4_E019))
+    })
+}
+
+/// The uniform number in [0, 1) made of the upper 53 bits.
+#[must_use]
+pub const fn unit_f64(bits: u64) -> f64 {
+    const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
+    (bits >> 11) as f64 * SCALE
+}
+
+/// The uniform number in [0, 1) with this 32-bit fraction.
+#[must_use]
+pub const fn unit_f64_from_u32(bits: u32) -> f64 {
+    const SCALE: f64 = 1.0 / (1_u64 << 32) as f64;
+    bits as f64 * SCALE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_counters_are_uncorrelated() {
+        // Lag-one correlation of uniform numbers from counters that differ by one; standard error 1/√n.
+        let n = 1_u64 << 18;
+        let sample = |i: u64| unit_f64(hash(&[7, i])) - 0.5;
+        let (mut product, mut sum) = (0.0, 0.0);
+        for i in 0..n {
+            product += sample(i) * sample(i + 1) * 12.0;
+            sum += sample(i);
+        }
+        let scale = (n as f64).sqrt();
+        assert!((product / scale).abs() < 5.0, "{}", product / scale);
+        assert!((sum * 12.0_f64.sqrt() / scale).abs() < 5.0);
+    }
+
+    #[test]
+    fn one_flipped_bit_flips_half_of_the_output() {
+        for bit in 0..64 {
+            let flips: u32 = (0..256)
+                .map(|i| (hash(&[i, 3]) ^ hash(&[i ^ (1 << bit), 3])).count_ones())
+                .sum();
+            let mean = f64::from(flips) / 256.0;
+            assert!((mean - 32.0).abs() < 2.0, "bit {bit}: {mean}");
+        }
+    }
+
+    #[test]
+    fn order_and_number_of_keys_matter() {
+        assert_ne!(hash(&[1, 2]), hash(&[2, 1]));
+        assert_ne!(hash(&[0]), hash(&[0, 0]));
+    }
+
+    #[test]
+    fn unit_numbers_stay_below_one() {
+        assert!(unit_f64(u64::MAX) < 1.0);
+        assert!(unit_f64_from_u32(u32::MAX) < 1.0);
+        assert_eq!((unit_f64(0), unit_f64_from_u32(1 << 31)), (0.0, 0.5));
+    }
+}
