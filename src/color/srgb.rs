@@ -1,6 +1,6 @@
 //! The sRGB transfer (IEC 61966-2-1): between linear light and the numbers stored in 8-bit pictures.
 
-use libm::pow;
+use crate::math::functions::pow;
 
 /// Encodes one linear channel in 0..=1 for display; values outside are clamped, NaN becomes 0.
 #[must_use]

@@ -12,3 +12,10 @@ pub const PARALLEL_SINE: f64 = 1e-8;
 /// A model's colours are `f32`, so a sum that is 1 on paper carries up to two roundings of 2⁻²⁴. Used by
 /// `material`. Ten times larger would let 0.01 ‰ of extra light through per bounce; ten times smaller refuses 0.7 + 0.3.
 pub const ENERGY_EXCESS: f64 = 2.0 * f32::EPSILON as f64;
+
+/// What a pixel's squared luminance is raised by before an error is divided by it, as a share of the picture's mean
+/// luminance squared. Dimensionless.
+///
+/// Pixels darker than a tenth of the mean are judged by absolute, not relative, error. Ten times larger would hide
+/// the grain of shadows; ten times smaller would let a few nearly black pixels decide. Used by [`crate::film`].
+pub const DARK_PIXEL_FLOOR: f64 = 0.01;

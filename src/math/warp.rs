@@ -4,8 +4,8 @@
 //! well-spread points of the square stay well spread. Densities per unit area (`pdf_area`) or per steradian
 //! (`pdf_solid_angle`) are named; they never share a name.
 
+use crate::math::functions::{cos, sin};
 use glam::{DVec2, DVec3};
-use libm::{cos, sin};
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
 
 /// A point of the unit disk, uniform (density 1/π per area), by the concentric map of [Shirley1997](crate::references#shirley1997).
