@@ -47,3 +47,32 @@ pub struct SunDisk {
     /// Half of the angle it subtends; 0.2666° from Earth.
     pub angular_radius: Angle,
 }
+
+impl Environment {
+    /// The daylight of a clear day: sky and sun that belong together.
+    ///
+    /// `azimuth` of the sun from +x towards +y, `elevation` above the horizon; `turbidity` 1 (pure air) ..=10 (hazy);
+    /// `ground_albedo` 0..=1 of the land round about. Dark if the sun is not above the horizon.
+    #[must_use]
+    pub fn daylight(azimuth: Angle, elevation: Angle, turbidity: f64, ground_albedo: Rgb) -> Self {
+        Self {
+            sky: Sky::ClearSky {
+                sun_azimuth: azimuth,
+                sun_elevation: elevation,
+                turbidity,
+                ground_albedo,
+            },
+            sun: SunDisk::clear(azimuth, elevation, turbidity),
+        }
+    }
+}
+
+/// The unit vector at this azimuth (from +x towards +y) and elevation above the horizon (z up).
+#[must_use]
+pub fn direction(azimuth: Angle, elevation: Angle) -> DVec3 {
+    DVec3::new(
+        elevation.cos() * azimuth.cos(),
+        elevation.cos() * azimuth.sin(),
+        elevation.sin(),
+    )
+}

@@ -3,7 +3,10 @@
 //! Sources answer two questions: how much light reaches a point from a direction they choose ([`LightSample`]), and with
 //! which density they would have chosen it. Visibility is not their business.
 
+pub mod alias;
+mod clear_sky;
 pub mod environment;
+pub mod sun;
 
 pub use environment::{Environment, Sky, SunDisk};
 
