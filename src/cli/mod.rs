@@ -1,1 +1,3 @@
-//! (to be written)
+//! The program as people meet it: commands, messages, exit codes.
+
+pub mod args;

@@ -1,0 +1,334 @@
+//! The command line becomes a request.
+//!
+//! Commands and paths are written out here; every option of a model comes from its row of the table of options.
+
+use crate::options::{Command, OptionRow, Options, Origin, Section, TABLE};
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{
+    Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
+};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// What the user asks for.
+#[derive(Debug)]
+pub struct Request {
+    /// The command with its paths.
+    pub action: Action,
+    /// The options set by flags, over the defaults.
+    pub flags: Options,
+}
+
+/// A command with its paths.
+#[derive(Debug, Subcommand)]
+pub enum Action {
+    /// Read and check a model; print every error and warning; write nothing
+    Check(CheckArgs),
+    /// Grow a model; print its graph, its counts or its bracketed string
+    Derive(DeriveArgs),
+    /// Grow a model and make one picture of it
+    Render(RenderArgs),
+    /// Make the picture, and make it again whenever an input changes
+    Watch(WatchArgs),
+    /// Make the frames of a film: the camera moves
+    Fly(FlyArgs),
+}
+
+/// The model.
+#[derive(Debug, Args)]
+pub struct ModelArg {
+    /// The model: a `.rgg` file, or a folder of them
+    pub model: PathBuf,
+}
+
+/// What all commands that run a model take.
+#[derive(Debug, Args)]
+pub struct Manners {
+    /// Show no progress and no summary
+    #[arg(long)]
+    pub quiet: bool,
+    /// Print each option with its value and where it came from, and stop
+    #[arg(long)]
+    pub explain_options: bool,
+}
+
+/// `check`
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  understory check plant.rgg")]
+pub struct CheckArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+}
+
+/// What `derive` prints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Print {
+    /// The graph, one node a line
+    Tree,
+    /// One line per node type, with its count
+    Counts,
+    /// The bracketed string
+    String,
+}
+
+/// `derive`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory derive plant.rgg --steps 5 --print counts\n  \
+                        understory derive plant.rgg --steps 5 --json counts.json\n\n\
+                        What the model prints with `println` goes to standard output."
+)]
+pub struct DeriveArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// What to print of the grown graph
+    #[arg(long, value_name = "WHAT", value_enum)]
+    pub print: Option<Print>,
+    /// Write step, counts, total, seconds, seed and hash of the graph to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
+/// `render`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory render forest.rgg -o forest.png\n  \
+                        understory render plant.rgg --steps 9 -o plant.png --quality final --size 1920x1080\n  \
+                        understory render plant.rgg -o plant.exr --eye 3,-4,2 --target 0,0,1 --sun 135,40\n\n\
+                        A model without a camera is framed whole; one without a light stands in daylight on a plane.\n\
+                        Ctrl-C stops and writes the picture with the samples so far."
+)]
+pub struct RenderArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The picture: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Write what was done, and how long it took, to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
+/// `watch`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  understory watch plant.rgg -o plant.png --quality draft\n\n\
+                        Errors are shown and survived; the last good picture stays. Ctrl-C ends it."
+)]
+pub struct WatchArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The picture: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
+/// `fly`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory fly forest.rgg --orbit -o frames\n  \
+                        understory fly forest.rgg --orbit --flight-frames 240 --frames 0..6 -o frames\n\n\
+                        Frames already in the folder that were made from the same model and options are kept,\n\
+                        so a flight that was stopped goes on where it was."
+)]
+pub struct FlyArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The folder for frame-000000.png and so on; made if it is missing
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: PathBuf,
+    /// Write what was done, and how long it took, to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "understory",
+    version,
+    about = "Grows plants and forests from growth grammars and renders them with its own light transport",
+    after_help = "A file NAME.toml beside NAME.rgg (or the one in the folder) may hold the same options:\n  \
+                  steps, seed, and under [camera], [render], [sky], [fly] what --help lists there.\n\
+                  Flags win over it, it wins over the preset of --quality.\n\n\
+                  Exit codes: 0 done; 1 the model has errors; 2 usage; 3 the world failed (file, memory) or it was stopped.",
+    styles = STYLES,
+    max_term_width = 110
+)]
+struct Cli {
+    #[command(subcommand)]
+    action: Action,
+}
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+/// The commands with their names.
+const COMMANDS: [(&str, Command); 5] = [
+    ("check", Command::Check),
+    ("derive", Command::Derive),
+    ("render", Command::Render),
+    ("watch", Command::Watch),
+    ("fly", Command::Fly),
+];
+
+impl Request {
+    /// Reads a command line, the program's name first.
+    ///
+    /// # Errors
+    /// What to print: the error, or the help that was asked for.
+    pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        let mut cli = cli();
+        let matches = cli.try_get_matches_from_mut(words)?;
+        let action = Cli::from_arg_matches(&matches)?.action;
+        let mut flags = Options::default();
+        if let Some((name, given)) = matches.subcommand() {
+            for row in TABLE.iter().filter(|row| knows(name, row)) {
+                let Some(text) = given_text(given, row) else {
+                    continue;
+                };
+                flags
+                    .set(row.key, &text, Origin::Flag)
+                    .map_err(|error| cli.error(clap::error::ErrorKind::ValueValidation, error))?;
+            }
+        }
+        Ok(Self { action, flags })
+    }
+}
+
+impl Action {
+    /// Which command it is.
+    pub fn command(&self) -> Command {
+        match self {
+            Self::Check(_) => Command::Check,
+            Self::Derive(_) => Command::Derive,
+            Self::Render(_) => Command::Render,
+            Self::Watch(_) => Command::Watch,
+            Self::Fly(_) => Command::Fly,
+        }
+    }
+}
+
+fn knows(command_name: &str, row: &OptionRow) -> bool {
+    COMMANDS
+        .iter()
+        .any(|(name, command)| *name == command_name && row.commands.contains(command))
+}
+
+fn given_text(given: &ArgMatches, row: &OptionRow) -> Option<String> {
+    if row.is_switch() {
+        given.get_flag(row.key).then(|| "true".to_owned())
+    } else {
+        given.get_one::<String>(row.key).cloned()
+    }
+}
+
+/// The commands with the options of the table added.
+fn cli() -> clap::Command {
+    let mut cli = Cli::command();
+    for (name, _) in COMMANDS {
+        cli = cli.mut_subcommand(name, |mut command| {
+            for row in TABLE.iter().filter(|row| knows(name, row)) {
+                command = command.arg(flag(row));
+            }
+            command
+        });
+    }
+    cli
+}
+
+fn flag(row: &'static OptionRow) -> Arg {
+    let heading = match row.section {
+        Section::Model => "Model",
+        Section::Camera => "Camera [camera]",
+        Section::Render => "Picture [render]",
+        Section::Sky => "Daylight [sky]",
+        Section::Fly => "Flight [fly]",
+    };
+    let arg = Arg::new(row.key).long(row.key).help_heading(heading);
+    if row.is_switch() {
+        arg.action(ArgAction::SetTrue).help(row.doc)
+    } else {
+        // Coordinates may begin with a minus.
+        arg.value_name(row.unit)
+            .allow_hyphen_values(true)
+            .help(format!("{} [default: {}]", row.doc, row.default))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    fn parse(line: &str) -> Result<Request, clap::Error> {
+        Request::parse(format!("understory {line}").split(' ').map(OsString::from))
+    }
+
+    #[test]
+    fn the_commands_are_well_formed() {
+        cli().debug_assert();
+    }
+
+    #[test]
+    fn flags_come_from_the_table() {
+        let request =
+            parse("fly m.rgg -o f --orbit --frames 2..4 --eye -1,-2,3 --seed -7").unwrap();
+        assert_eq!(request.flags.eye.value, Some(DVec3::new(-1.0, -2.0, 3.0)));
+        assert_eq!(
+            (request.flags.seed.value, request.flags.orbit.value),
+            (-7, true)
+        );
+        assert_eq!(request.flags.frames.value, Some(2..4));
+        assert_eq!(request.flags.frames.origin, Origin::Flag);
+        assert_eq!(request.flags.samples.origin, Origin::Default);
+    }
+
+    #[test]
+    fn a_command_knows_only_its_own_options() {
+        assert!(parse("derive m.rgg --samples 3").is_err());
+        assert!(parse("render m.rgg -o a.png --orbit").is_err());
+        assert!(parse("check m.rgg --steps 3").is_err());
+    }
+
+    #[test]
+    fn impossible_values_are_usage_errors_that_say_what_is_possible() {
+        for (flags, expected) in [
+            (
+                "--samples 0",
+                "`samples` must be a whole number from 1 up, not `0`",
+            ),
+            ("--eye 1,NaN,2", "three finite numbers"),
+            ("--fov 180", "less than 180"),
+            ("--renderer photon", "not built yet"),
+            ("--smaples 3", "--samples"),
+        ] {
+            let error = parse(&format!("render m.rgg -o a.png {flags}")).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{flags}");
+            assert!(error.to_string().contains(expected), "{flags}: {error}");
+        }
+        let error = parse("fly m.rgg -o f --frames 5..2")
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("A less than B"), "{error}");
+    }
+}
