@@ -3,7 +3,7 @@
 use super::environment::direction;
 use crate::color::Rgb;
 use crate::math::angle::Angle;
-use crate::math::functions::{acos, exp, pow};
+use crate::math::functions::{acos, asin, exp, pow};
 use glam::DVec3;
 use hw_skymodel::rgb::{SkyParams, SkyState};
 
@@ -29,8 +29,10 @@ impl ClearSky {
         turbidity: f64,
         albedo: Rgb,
     ) -> Option<Self> {
-        let radians = elevation.radians();
-        if !(radians > 0.0 && radians <= std::f64::consts::PI && azimuth.radians().is_finite()) {
+        let to_sun = direction(azimuth, elevation);
+        // An elevation beyond 90° is one below 90° on the other side.
+        let height = asin(to_sun.z.clamp(-1.0, 1.0));
+        if !(to_sun.is_finite() && height > 0.0) {
             return None;
         }
         let turbidity = if turbidity.is_nan() {
@@ -39,7 +41,7 @@ impl ClearSky {
             turbidity.clamp(1.0, 10.0)
         };
         let params = SkyParams {
-            elevation: (radians as f32).min(std::f32::consts::FRAC_PI_2),
+            elevation: (height as f32).min(std::f32::consts::FRAC_PI_2),
             turbidity: turbidity as f32,
             albedo: albedo
                 .to_array()
@@ -49,7 +51,7 @@ impl ClearSky {
         let coefficients =
             std::array::from_fn(|channel| std::array::from_fn(|i| f64::from(raw[9 * channel + i])));
         Some(Self {
-            to_sun: direction(azimuth, elevation),
+            to_sun,
             coefficients,
             scale: scale.map(f64::from),
         })

@@ -5,10 +5,14 @@
 
 pub mod alias;
 mod clear_sky;
+pub mod dome;
 pub mod environment;
+mod lamp;
 pub mod sun;
 
+pub use dome::Dome;
 pub use environment::{Environment, Sky, SunDisk};
+pub use lamp::LightError;
 
 use crate::color::Rgb;
 use crate::math::angle::Angle;
@@ -46,4 +50,18 @@ pub enum Light {
         /// A point of the plane, perpendicular to `direction`, where the light begins.
         origin: DVec3,
     },
+}
+
+/// Light that arrives at a point from one direction, chosen by a source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Unit vector from the point towards the light.
+    pub wi: DVec3,
+    /// How far away the light is, metres; infinite for sky, sun and parallel light.
+    pub distance: f64,
+    /// Estimate of the irradiance on a surface that faces `wi`, W/m² per channel, nothing being in the way: radiance
+    /// divided by density for a source with extent, the exact value for one without.
+    pub facing_irradiance: Rgb,
+    /// Density of `wi` per steradian, or `None` for a source without extent, which no scattered ray can hit.
+    pub pdf_solid_angle: Option<f64>,
 }

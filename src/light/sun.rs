@@ -8,11 +8,15 @@
 //! data of Hosek and Wilkie. The sum of the three channels is close to the power between 400 and 700 nm (for an even
 //! spectrum 7 % more), so absorbed daylight can be read as visible (photosynthetically active) watts.
 
-use super::SunDisk;
 use super::environment::direction;
+use super::{LightSample, SunDisk};
 use crate::color::Rgb;
 use crate::math::angle::Angle;
-use crate::math::functions::{exp, pow};
+use crate::math::frame::Frame;
+use crate::math::functions::{asin, exp, pow};
+use crate::math::warp;
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
 /// Half the angle the sun subtends, in degrees: its mean as seen from Earth.
 pub const ANGULAR_RADIUS_DEGREES: f64 = 0.2666;
@@ -94,12 +98,65 @@ impl SunDisk {
     /// `turbidity` is that of the sky, 1 (pure air) to 10 (hazy), and is clamped to it.
     #[must_use]
     pub fn clear(azimuth: Angle, elevation: Angle, turbidity: f64) -> Option<Self> {
-        let is_up = elevation.radians() > 0.0 && elevation.radians().is_finite();
-        is_up.then(|| Self {
-            to_sun: direction(azimuth, elevation),
-            irradiance: direct_irradiance(elevation, turbidity),
+        let to_sun = direction(azimuth, elevation);
+        // An elevation beyond 90° is one below 90° on the other side.
+        let height = Angle::rad(asin(to_sun.z.clamp(-1.0, 1.0)));
+        (to_sun.is_finite() && to_sun.z > 0.0).then(|| Self {
+            to_sun,
+            irradiance: direct_irradiance(height, turbidity),
             angular_radius: Angle::deg(ANGULAR_RADIUS_DEGREES),
         })
+    }
+
+    /// Solid angle of the disk in steradian.
+    #[must_use]
+    pub fn solid_angle(&self) -> f64 {
+        warp::cone_solid_angle(self.angular_radius.radians())
+    }
+
+    /// Radiance from the direction `w` (unit): that of the disk inside, 0 outside; W/(m² sr) per channel.
+    ///
+    /// The disk is evenly bright, so that it gives its irradiance on a facing surface (∫ cos θ dω = π sin² of its radius).
+    #[must_use]
+    pub fn radiance(&self, w: DVec3) -> Rgb {
+        if self.contains(w) {
+            self.disk_radiance()
+        } else {
+            Rgb::BLACK
+        }
+    }
+
+    /// A direction on the disk, uniform in solid angle, from a point of the unit square.
+    #[must_use]
+    pub fn sample(&self, u: DVec2) -> LightSample {
+        let local = warp::cone(u, self.angular_radius.radians());
+        LightSample {
+            wi: Frame::from_normal(self.to_sun).to_world(local).normalize(),
+            distance: f64::INFINITY,
+            facing_irradiance: self.disk_radiance() * self.solid_angle(),
+            pdf_solid_angle: Some(1.0 / self.solid_angle()),
+        }
+    }
+
+    /// Density per steradian with which [`sample`](Self::sample) chooses `w`.
+    #[must_use]
+    pub fn pdf_solid_angle(&self, w: DVec3) -> f64 {
+        if self.contains(w) {
+            1.0 / self.solid_angle()
+        } else {
+            0.0
+        }
+    }
+
+    fn contains(&self, w: DVec3) -> bool {
+        // |w - s| = 2 sin(angle/2): keeps the digits that the cosine of a small angle loses.
+        let half_chord = self.angular_radius.half().sin();
+        (w - self.to_sun).length_squared() <= 4.0 * half_chord * half_chord
+    }
+
+    fn disk_radiance(&self) -> Rgb {
+        let sin = self.angular_radius.sin();
+        self.irradiance / (PI * sin * sin)
     }
 }
 
@@ -226,5 +283,25 @@ mod tests {
                 None
             );
         }
+    }
+
+    #[test]
+    fn the_disk_gives_its_irradiance() {
+        let sun = SunDisk::clear(Angle::deg(20.0), Angle::deg(40.0), 3.0).unwrap();
+        let (n, mut sum) = (64, Rgb::BLACK);
+        for i in 0..n * n {
+            let u = DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
+            let sample = sun.sample(u);
+            assert_eq!(Some(sun.pdf_solid_angle(sample.wi)), sample.pdf_solid_angle);
+            assert_eq!(
+                sun.radiance(sample.wi) * sun.solid_angle(),
+                sample.facing_irradiance
+            );
+            sum += sample.facing_irradiance * sample.wi.dot(sun.to_sun) / f64::from(n * n);
+        }
+        assert!((sum.g / sun.irradiance.g - 1.0).abs() < 1e-12);
+        assert_eq!(sun.radiance(DVec3::Z), Rgb::BLACK);
+        let beside = Frame::from_normal(sun.to_sun).to_world(warp::cone(DVec2::X, 0.004_66));
+        assert_eq!(sun.pdf_solid_angle(beside), 0.0);
     }
 }

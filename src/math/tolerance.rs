@@ -19,3 +19,10 @@ pub const ENERGY_EXCESS: f64 = 2.0 * f32::EPSILON as f64;
 /// Pixels darker than a tenth of the mean are judged by absolute, not relative, error. Ten times larger would hide
 /// the grain of shadows; ten times smaller would let a few nearly black pixels decide. Used by [`crate::film`].
 pub const DARK_PIXEL_FLOOR: f64 = 0.01;
+
+/// How far the length of a given unit vector may be from 1.
+///
+/// A direction that went through a model's `f32` vectors and a product of matrices carries about ten roundings of
+/// 2⁻²⁴. Ten times larger would let a vector pass that nobody normalised; ten times smaller would refuse turned lamps.
+/// Used by [`crate::light`].
+pub const UNIT_LENGTH: f64 = 1e-6;
