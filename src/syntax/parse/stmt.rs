@@ -1,0 +1,253 @@
+//! Statements.
+
+use super::grammar::Rule;
+use super::item::with_dims;
+use super::{Reader, kids};
+use crate::syntax::ast::{
+    Block, Class, Expr, ForHead, Ident, LocalVar, Modifiers, Param, Stmt, StmtKind, SwitchCase,
+    TypeRef,
+};
+use pest::iterators::Pair;
+
+impl Reader<'_> {
+    pub(super) fn statement(&self, pair: Pair<'_, Rule>) -> Stmt {
+        let span = self.span(&pair);
+        let kind = match pair.as_rule() {
+            Rule::empty => StmtKind::Empty,
+            Rule::block => StmtKind::Block(self.block(pair)),
+            Rule::rules => StmtKind::Rules(self.rule_items(pair)),
+            Rule::switch_statement => self.switch(pair),
+            Rule::return_statement => {
+                StmtKind::Return(kids(pair).next().map(|value| self.expr(value)))
+            }
+            Rule::break_statement => StmtKind::Break(self.target(pair)),
+            Rule::continue_statement => StmtKind::Continue(self.target(pair)),
+            Rule::try_statement => self.try_statement(pair),
+            Rule::local_class => self.local_class(pair),
+            Rule::labeled => return self.labeled(pair),
+            Rule::local => {
+                StmtKind::Local(kids(pair).flat_map(|kid| self.variables(kid)).collect())
+            }
+            _ => self.compound(pair),
+        };
+        Stmt { kind, span }
+    }
+
+    /// Statements made of expressions and statements only.
+    fn compound(&self, pair: Pair<'_, Rule>) -> StmtKind {
+        let which = pair.as_rule();
+        let (mut exprs, mut stmts, mut head) = (vec![], vec![], None);
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::expr => exprs.push(self.expr(kid)),
+                Rule::for_each | Rule::for_classic | Rule::range => head = Some(self.for_head(kid)),
+                _ => stmts.push(self.statement(kid)),
+            }
+        }
+        let expr = exprs.into_iter().next();
+        let mut stmts = stmts.into_iter().map(Box::new);
+        match (which, expr, stmts.next(), head) {
+            (Rule::if_statement, Some(cond), Some(then), _) => {
+                StmtKind::If(cond, then, stmts.next())
+            }
+            (Rule::while_statement, Some(cond), Some(body), _) => StmtKind::While(cond, body),
+            (Rule::do_statement, Some(cond), Some(body), _) => StmtKind::DoWhile(body, cond),
+            (Rule::for_statement, _, Some(body), Some(head)) => StmtKind::For(head, body),
+            (Rule::throw_statement, Some(value), ..) => StmtKind::Throw(value),
+            (_, Some(value), ..) => StmtKind::Expr(value),
+            _ => StmtKind::Broken,
+        }
+    }
+
+    fn target(&self, pair: Pair<'_, Rule>) -> Option<Ident> {
+        kids(pair).next().map(|label| self.ident(&label))
+    }
+
+    fn labeled(&self, pair: Pair<'_, Rule>) -> Stmt {
+        let end = self.span(&pair);
+        let (mut labels, mut body) = (
+            vec![],
+            Stmt {
+                kind: StmtKind::Empty,
+                span: end,
+            },
+        );
+        for kid in kids(pair) {
+            if kid.as_rule() == Rule::label {
+                labels.push(self.first_ident(&kid));
+            } else {
+                body = self.statement(kid);
+            }
+        }
+        labels.into_iter().rev().fold(body, |body, label| {
+            let span = label.span.to(body.span);
+            Stmt {
+                kind: StmtKind::Labeled(label, Box::new(body)),
+                span,
+            }
+        })
+    }
+
+    fn local_class(&self, pair: Pair<'_, Rule>) -> StmtKind {
+        let span = self.span(&pair);
+        let mut modifiers = Modifiers::default();
+        for kid in kids(pair) {
+            if kid.as_rule() == Rule::modifier_word {
+                self.modifier(&kid, &mut modifiers);
+            } else if kid.as_rule() == Rule::class {
+                return StmtKind::Class(Box::new(Class {
+                    span,
+                    ..self.class(kid, modifiers)
+                }));
+            }
+        }
+        StmtKind::Empty
+    }
+
+    fn variables(&self, pair: Pair<'_, Rule>) -> Vec<LocalVar> {
+        let mut modifiers = Modifiers::default();
+        let mut ty = TypeRef {
+            path: vec![],
+            dims: 0,
+            span: self.span(&pair),
+        };
+        let mut found = vec![];
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::modifier_word => self.modifier(&kid, &mut modifiers),
+                Rule::type_ref => ty = self.type_ref(kid),
+                Rule::declarator => {
+                    let (name, dims, init) = self.declarator(kid);
+                    found.push(LocalVar {
+                        is_final: modifiers.is_final,
+                        ty: with_dims(ty.clone(), dims),
+                        name,
+                        init,
+                    });
+                }
+                _ => {}
+            }
+        }
+        found
+    }
+
+    pub(super) fn for_head(&self, pair: Pair<'_, Rule>) -> ForHead {
+        match pair.as_rule() {
+            Rule::for_each => self.for_each(pair),
+            Rule::for_classic => self.for_classic(pair),
+            _ => ForHead::Sequence(self.range(pair)),
+        }
+    }
+
+    fn for_each(&self, pair: Pair<'_, Rule>) -> ForHead {
+        let span = self.span(&pair);
+        let name = self.first_ident(&pair);
+        let mut modifiers = Modifiers::default();
+        let mut ty = TypeRef {
+            path: vec![],
+            dims: 0,
+            span,
+        };
+        let mut sequence = Self::broken(span);
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::modifier_word => self.modifier(&kid, &mut modifiers),
+                Rule::type_ref => ty = self.type_ref(kid),
+                Rule::range => sequence = self.range(kid),
+                _ => {}
+            }
+        }
+        ForHead::Each {
+            var: LocalVar {
+                is_final: modifiers.is_final,
+                ty,
+                name,
+                init: None,
+            },
+            sequence,
+        }
+    }
+
+    fn for_classic(&self, pair: Pair<'_, Rule>) -> ForHead {
+        let (mut init, mut cond, mut update) = (vec![], None, vec![]);
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::for_init => init = kids(kid).map(|part| self.for_start(part)).collect(),
+                Rule::for_cond => cond = kids(kid).next().map(|cond| self.expr(cond)),
+                _ => update = kids(kid).map(|part| self.expr(part)).collect(),
+            }
+        }
+        ForHead::Classic { init, cond, update }
+    }
+
+    fn for_start(&self, pair: Pair<'_, Rule>) -> Stmt {
+        if pair.as_rule() == Rule::expr {
+            return Self::expr_stmt(self.expr(pair));
+        }
+        let span = self.span(&pair);
+        Stmt {
+            kind: StmtKind::Local(self.variables(pair)),
+            span,
+        }
+    }
+
+    fn switch(&self, pair: Pair<'_, Rule>) -> StmtKind {
+        let mut value = Self::broken(self.span(&pair));
+        let mut cases = vec![];
+        for kid in kids(pair) {
+            if kid.as_rule() == Rule::expr {
+                value = self.expr(kid);
+            } else {
+                cases.push(self.switch_case(kid));
+            }
+        }
+        StmtKind::Switch(value, cases)
+    }
+
+    fn switch_case(&self, pair: Pair<'_, Rule>) -> SwitchCase {
+        let mut case = SwitchCase {
+            value: None,
+            body: vec![],
+        };
+        for kid in kids(pair) {
+            if kid.as_rule() == Rule::expr {
+                case.value = Some(self.expr(kid));
+            } else {
+                case.body.push(self.statement(kid));
+            }
+        }
+        case
+    }
+
+    fn try_statement(&self, pair: Pair<'_, Rule>) -> StmtKind {
+        let (mut body, mut catches, mut finally) = (Block::default(), vec![], None);
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::catch_clause => catches.extend(self.catch_clause(kid)),
+                Rule::finally_clause => finally = kids(kid).next().map(|block| self.block(block)),
+                _ => body = self.block(kid),
+            }
+        }
+        StmtKind::Try {
+            body,
+            catches,
+            finally,
+        }
+    }
+
+    fn catch_clause(&self, pair: Pair<'_, Rule>) -> Option<(Param, Block)> {
+        let mut parts = kids(pair);
+        Some((self.param(parts.next()?), self.block(parts.next()?)))
+    }
+
+    /// The statements of `.( … )`.
+    pub(super) fn with_block(&self, pair: Pair<'_, Rule>) -> Vec<Stmt> {
+        kids(pair)
+            .map(|part| Self::expr_stmt(self.expr(part)))
+            .collect()
+    }
+
+    pub(super) fn args(&self, pair: Pair<'_, Rule>) -> Vec<Expr> {
+        kids(pair).map(|arg| self.range(arg)).collect()
+    }
+}
