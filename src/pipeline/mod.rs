@@ -4,7 +4,10 @@
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed.
 
 pub mod content_hash;
+pub mod exposing;
 pub mod failure;
+pub mod report;
 pub mod sources;
 pub mod store;
+pub mod viewpoint;
 pub mod world;

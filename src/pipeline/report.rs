@@ -1,0 +1,239 @@
+//! What was done, what it took, and what came out: the object that `--report` writes.
+
+use super::content_hash::ContentHash;
+use super::world::World;
+use crate::diag::SourceMap;
+use crate::options::{Options, explain};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// Keys by which an earlier report is known when it is to be replaced.
+pub const REPORT_KEYS: &[&str] = &["version", "model_hash", "seconds", "image_hash"];
+
+/// A part of a run that takes time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Reading and checking the model.
+    Read,
+    /// Growing it.
+    Derive,
+    /// Turning the grown graph into shapes, materials and lights.
+    Scene,
+    /// Building the acceleration structure.
+    Accel,
+    /// View-independent preparation of the renderer, and deciding the exposure.
+    Prepare,
+    /// Tracing light.
+    Render,
+    /// Encoding and writing.
+    Write,
+}
+
+/// Seconds spent in each phase.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PhaseSeconds {
+    /// See [`Phase::Read`].
+    pub read: f64,
+    /// See [`Phase::Derive`].
+    pub derive: f64,
+    /// See [`Phase::Scene`].
+    pub scene: f64,
+    /// See [`Phase::Accel`].
+    pub accel: f64,
+    /// See [`Phase::Prepare`].
+    pub prepare: f64,
+    /// See [`Phase::Render`].
+    pub render: f64,
+    /// See [`Phase::Write`].
+    pub write: f64,
+}
+
+impl PhaseSeconds {
+    /// Adds time to a phase.
+    pub fn add(&mut self, phase: Phase, time: Duration) {
+        let total = match phase {
+            Phase::Read => &mut self.read,
+            Phase::Derive => &mut self.derive,
+            Phase::Scene => &mut self.scene,
+            Phase::Accel => &mut self.accel,
+            Phase::Prepare => &mut self.prepare,
+            Phase::Render => &mut self.render,
+            Phase::Write => &mut self.write,
+        };
+        *total += time.as_secs_f64();
+    }
+
+    /// Does some work and adds its time to a phase.
+    pub fn time<T>(&mut self, world: &dyn World, phase: Phase, work: impl FnOnce() -> T) -> T {
+        let start = world.now();
+        let result = work();
+        self.add(phase, world.now().saturating_sub(start));
+        result
+    }
+
+    /// Phases that took noticeable time, for a line of status: `derive 0.52 s, render 3.10 s`.
+    pub fn summary(&self) -> String {
+        let phases = [
+            ("read", self.read),
+            ("derive", self.derive),
+            ("scene", self.scene),
+            ("accel", self.accel),
+            ("prepare", self.prepare),
+            ("render", self.render),
+            ("write", self.write),
+        ];
+        let noticeable = phases.iter().filter(|(_, seconds)| *seconds >= 0.005);
+        let parts: Vec<String> = noticeable
+            .map(|(name, seconds)| format!("{name} {seconds:.2} s"))
+            .collect();
+        if parts.is_empty() {
+            "nothing to do".into()
+        } else {
+            parts.join(", ")
+        }
+    }
+}
+
+/// What tracing light amounted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// Rays traced.
+    pub n_rays: u64,
+    /// Samples in each pixel (the fewest, if not all have equally many).
+    pub samples_per_pixel: u32,
+    /// Estimated relative error of the picture (the largest, of several); `None` if it cannot be told.
+    pub relative_error: Option<f64>,
+}
+
+impl Effort {
+    /// This and another picture of the same film.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let both = self.relative_error.zip(other.relative_error);
+        Self {
+            n_rays: self.n_rays + other.n_rays,
+            samples_per_pixel: self.samples_per_pixel.min(other.samples_per_pixel),
+            relative_error: both.map(|(a, b)| a.max(b)),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct OptionValue<'a> {
+    value: &'a str,
+    origin: String,
+}
+
+/// The object that `--report` writes.
+#[derive(Serialize)]
+pub struct Report<'a> {
+    version: &'static str,
+    model_hash: String,
+    seed: i64,
+    options: BTreeMap<&'static str, OptionValue<'a>>,
+    seconds: &'a PhaseSeconds,
+    rays: u64,
+    samples_per_pixel: u32,
+    /// No method of this version emits photons.
+    photons_emitted: Option<u64>,
+    /// No method of this version stores photons.
+    photons_stored: Option<u64>,
+    /// No method of this version has patches.
+    patches: Option<u64>,
+    /// No method of this version has a solver.
+    solver_residual: Option<f64>,
+    relative_error: Option<f64>,
+    peak_memory_bytes: Option<u64>,
+    image_hash: String,
+}
+
+impl<'a> Report<'a> {
+    /// The report of a run whose result has the hash `image`.
+    pub fn new(
+        world: &dyn World,
+        model: (&SourceMap, ContentHash),
+        options: &'a Options,
+        seconds: &'a PhaseSeconds,
+        effort: Effort,
+        image: ContentHash,
+    ) -> Self {
+        let (sources, model_hash) = model;
+        let values = options.entries().into_iter().map(|entry| {
+            let origin = explain::describe(entry.origin, sources);
+            (
+                entry.row.key,
+                OptionValue {
+                    value: entry.text,
+                    origin,
+                },
+            )
+        });
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            model_hash: model_hash.to_string(),
+            seed: options.seed.value,
+            options: values.collect(),
+            seconds,
+            rays: effort.n_rays,
+            samples_per_pixel: effort.samples_per_pixel,
+            photons_emitted: None,
+            photons_stored: None,
+            patches: None,
+            solver_residual: None,
+            relative_error: effort.relative_error,
+            peak_memory_bytes: world.peak_memory(),
+            image_hash: image.to_string(),
+        }
+    }
+
+    /// As JSON.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::to_value(self).expect("invariant: a report has only text keys")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::world::fake::FakeWorld;
+
+    #[test]
+    fn a_report_names_each_option_with_its_origin_and_is_known_again() {
+        let world = FakeWorld::default();
+        let mut seconds = PhaseSeconds::default();
+        let answer = seconds.time(&world, Phase::Derive, || 42);
+        assert_eq!((answer, seconds.derive, seconds.render), (42, 0.01, 0.0));
+        assert_eq!(seconds.summary(), "derive 0.01 s");
+        let hash = ContentHash::of([]);
+        let options = Options::default();
+        let sources = SourceMap::default();
+        let model = (&sources, hash);
+        let json =
+            Report::new(&world, model, &options, &seconds, Effort::default(), hash).to_json();
+        assert!(REPORT_KEYS.iter().all(|key| json.get(key).is_some()));
+        assert_eq!(json["options"]["samples"]["origin"], "default");
+        assert_eq!(json["options"]["samples"]["value"], "64");
+        assert!(json["photons_stored"].is_null() && json["relative_error"].is_null());
+    }
+
+    #[test]
+    fn the_error_of_a_film_is_that_of_its_worst_frame() {
+        let one = Effort {
+            n_rays: 5,
+            samples_per_pixel: 4,
+            relative_error: Some(0.1),
+        };
+        let other = Effort {
+            n_rays: 6,
+            samples_per_pixel: 2,
+            relative_error: Some(0.3),
+        };
+        let both = Effort {
+            n_rays: 11,
+            samples_per_pixel: 2,
+            relative_error: Some(0.3),
+        };
+        assert_eq!(one.and(other), both);
+    }
+}

@@ -1,0 +1,127 @@
+//! Which camera the options ask for.
+
+use super::failure::Failure;
+use super::sources::Sources;
+use crate::camera::{Camera, CameraError, View, framing};
+use crate::diag::Diagnostic;
+use crate::math::Bounds3;
+use crate::options::{Options, Origin};
+
+/// The view of the options; what they leave open frames `bounds`.
+pub fn view(options: &Options, bounds: &Bounds3) -> View {
+    let aspect = options.size.value.aspect();
+    let fov = options.fov.value;
+    let whole = framing::frame(bounds, fov, aspect);
+    let up = options.up.value;
+    match (options.eye.value, options.target.value) {
+        (Some(eye), Some(target)) => View {
+            eye,
+            target,
+            up,
+            fov,
+        },
+        (Some(eye), None) => View {
+            eye,
+            target: whole.target,
+            up,
+            fov,
+        },
+        (None, Some(target)) => View {
+            eye: target + (whole.eye - whole.target),
+            target,
+            up,
+            fov,
+        },
+        (None, None) => View { up, ..whole },
+    }
+}
+
+/// The camera of a view for pictures of the size that the options ask for.
+///
+/// # Errors
+/// If the view is impossible: an error in the file beside the model if that said so, a usage error otherwise.
+pub fn camera(sources: &Sources, options: &Options, view: &View) -> Result<Camera, Failure> {
+    Camera::perspective(view, options.size.value.aspect())
+        .map_err(|error| blame(sources, options, &error))
+}
+
+fn blame(sources: &Sources, options: &Options, error: &CameraError) -> Failure {
+    let keys: &[&str] = match error {
+        CameraError::FieldOfView(_) => &["fov"],
+        CameraError::UpAlongView(_) => &["up", "eye", "target"],
+        CameraError::NoDirection(_) | CameraError::NotFinite(_) => &["eye", "target"],
+    };
+    let origins = keys
+        .iter()
+        .filter_map(|key| options.entry_of(key))
+        .map(|entry| entry.origin);
+    let origins: Vec<Origin> = origins.collect();
+    let file = origins.iter().find_map(|origin| match origin {
+        Origin::Sidecar(span) => Some(*span),
+        Origin::Default | Origin::Preset(_) | Origin::Flag => None,
+    });
+    match file {
+        Some(span) if !origins.contains(&Origin::Flag) => Failure::model(
+            &sources.map,
+            Diagnostic::error("camera", span, error.to_string()),
+        ),
+        _ => Failure::Usage(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::sources::Inputs;
+    use crate::pipeline::world::fake::FakeWorld;
+    use glam::DVec3;
+    use std::path::Path;
+
+    fn read(sidecar: &str, flags: &[(&str, &str)]) -> (Sources, Options) {
+        let world = FakeWorld::default();
+        world.put("p.rgg", "");
+        world.put("p.toml", sidecar);
+        let sources = Inputs::find(&world, Path::new("p.rgg"))
+            .unwrap()
+            .read(&world)
+            .unwrap();
+        let mut options = Options::default();
+        for (key, text) in flags {
+            options.set(key, text, Origin::Flag).unwrap();
+        }
+        let options = sources.options(&options).unwrap();
+        (sources, options)
+    }
+
+    const BOX: Bounds3 = Bounds3 {
+        min: DVec3::ZERO,
+        max: DVec3::new(2.0, 2.0, 8.0),
+    };
+
+    #[test]
+    fn what_is_left_open_frames_the_model() {
+        let (_, options) = read("[camera]\neye = [9, 9, 9]", &[]);
+        let seen = view(&options, &BOX);
+        assert_eq!(
+            (seen.eye, seen.target),
+            (DVec3::splat(9.0), DVec3::new(1.0, 1.0, 4.0))
+        );
+        let (_, options) = read("[camera]\ntarget = [0, 0, 0]", &[]);
+        let (whole, seen) = (view(&Options::default(), &BOX), view(&options, &BOX));
+        assert!((seen.eye - seen.target).distance(whole.eye - whole.target) < 1e-12);
+    }
+
+    #[test]
+    fn an_impossible_camera_is_blamed_on_who_asked_for_it() {
+        let twice = "[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]";
+        let (sources, options) = read(twice, &[]);
+        let failure = camera(&sources, &options, &view(&options, &BOX)).unwrap_err();
+        assert!(matches!(failure, Failure::Model { .. }), "{failure:?}");
+        let (sources, options) = read("", &[("eye", "1,1,1"), ("target", "1,1,1")]);
+        let failure = camera(&sources, &options, &view(&options, &BOX)).unwrap_err();
+        assert!(matches!(failure, Failure::Usage(text) if text.contains("same point")));
+        let (sources, options) = read("", &[("eye", "1,1,9"), ("target", "1,1,1")]);
+        let failure = camera(&sources, &options, &view(&options, &BOX)).unwrap_err();
+        assert!(matches!(failure, Failure::Usage(text) if text.contains("up")));
+    }
+}
