@@ -9,5 +9,6 @@ pub mod failure;
 pub mod report;
 pub mod sources;
 pub mod store;
+pub mod surroundings;
 pub mod viewpoint;
 pub mod world;

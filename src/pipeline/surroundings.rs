@@ -1,0 +1,245 @@
+//! What a model is given that it does not bring along: daylight, and a ground to stand on.
+
+use crate::color::Rgb;
+use crate::geometry::Shape;
+use crate::light::{Environment, Sky};
+use crate::material::Material;
+use crate::math::angle::Angle;
+use crate::options::Options;
+use crate::options::value::{Daylight, Ground};
+use crate::scene::description::{
+    Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
+};
+use glam::{DAffine3, DVec3};
+
+/// The organ of what belongs to no organ of the model.
+pub const NO_ORGAN: OrganId = OrganId(u32::MAX);
+
+/// Reflectance of the ground that a model is given, and of the land round about: dry soil with short grass.
+const SOIL: Rgb = Rgb::new(0.23, 0.21, 0.15);
+
+/// Azimuth and elevation of the sun in the daylight that a model is given: over the left shoulder of who looks at it from
+/// where [`frame`](crate::camera::framing::frame) stands, so that light and shadow both show.
+const SUN: (Angle, Angle) = (Angle::deg(225.0), Angle::deg(40.0));
+
+/// Adds the daylight and the ground that the options ask for.
+pub fn complete(description: &mut SceneDescription, options: &Options) {
+    let has_light = has_light(description);
+    let sun = match options.sun.value {
+        Daylight::Auto if has_light => None,
+        Daylight::Auto => Some(SUN),
+        Daylight::None => None,
+        Daylight::Sun { azimuth, elevation } => Some((azimuth, elevation)),
+    };
+    let wants_ground = match options.ground.value {
+        Ground::Auto => !has_light && sun.is_some() && !has_plane(description),
+        Ground::None => false,
+        Ground::Color(_) => true,
+    };
+    let reflectance = match options.ground.value {
+        Ground::Color(reflectance) => reflectance,
+        Ground::Auto | Ground::None => SOIL,
+    };
+    if let Some((azimuth, elevation)) = sun {
+        // The compass runs from north (+y) over east (+x), mathematics from +x to +y.
+        let from_x = Angle::deg(90.0 - azimuth.degrees());
+        let turbidity = options.turbidity.value.0;
+        description.environment = Environment::daylight(from_x, elevation, turbidity, reflectance);
+    }
+    if wants_ground {
+        add_ground(description, reflectance);
+    }
+}
+
+fn has_light(description: &SceneDescription) -> bool {
+    !description.lights.is_empty()
+        || description.materials.iter().any(Material::is_emitter)
+        || description.environment.sun.is_some()
+        || description.environment.sky != Sky::None
+}
+
+/// The shapes placed in the world itself, not in instances.
+fn world_shapes(description: &SceneDescription) -> impl Iterator<Item = &PlacedShape> {
+    let root = description
+        .root
+        .and_then(|root| description.groups.get(root.0 as usize));
+    root.into_iter().flat_map(|group| &group.shapes)
+}
+
+fn has_plane(description: &SceneDescription) -> bool {
+    world_shapes(description).any(|placed| placed.shape == Shape::Plane)
+}
+
+/// Adds the plane z = 0, a little lower where the model has a floor of its own there.
+fn add_ground(description: &mut SceneDescription, reflectance: Rgb) {
+    // Two surfaces in one place hide each other by chance: sink under a floor by a thousandth of its size.
+    let floors = world_shapes(description).filter_map(floor_size);
+    let sunk = floors.fold(0.0, f64::max) / 1000.0;
+    let material = MaterialId(description.materials.len() as u32);
+    description.materials.push(Material::lambert(reflectance));
+    let ground = PlacedShape {
+        shape: Shape::Plane,
+        to_group: DAffine3::from_translation(DVec3::new(0.0, 0.0, -sunk)),
+        material,
+        organ: NO_ORGAN,
+    };
+    let root = match description.root {
+        Some(root) => root,
+        None => {
+            description.groups.push(Group::default());
+            GroupId(description.groups.len() as u32 - 1)
+        }
+    };
+    description.root = Some(root);
+    if let Some(group) = description.groups.get_mut(root.0 as usize) {
+        group.shapes.push(ground);
+    }
+}
+
+/// The size of a flat shape that lies in the plane z = 0.
+fn floor_size(placed: &PlacedShape) -> Option<f64> {
+    let corners = match &placed.shape {
+        Shape::Parallelogram {
+            corner,
+            edge_u,
+            edge_v,
+        } => {
+            vec![
+                *corner,
+                *corner + *edge_u,
+                *corner + *edge_v,
+                *corner + *edge_u + *edge_v,
+            ]
+        }
+        Shape::Disk { radius } => [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y]
+            .map(|axis| axis * *radius)
+            .to_vec(),
+        Shape::Mesh(mesh) => mesh.positions.clone(),
+        Shape::Sphere { .. } | Shape::Frustum { .. } | Shape::Box { .. } | Shape::Plane => {
+            return None;
+        }
+    };
+    let placed_corners = corners
+        .into_iter()
+        .map(|corner| placed.to_group.transform_point3(corner));
+    let none = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (min, max) = placed_corners.fold(none, |(min, max), p| (min.min(p), max.max(p)));
+    let size = (max - min).truncate().max_element();
+    // Closer than the plane would sink: they would still meet.
+    let is_floor = min.z > -size / 1000.0 && max.z < size / 1000.0;
+    is_floor.then_some(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+    use crate::options::Origin;
+
+    fn model(shapes: Vec<Shape>) -> SceneDescription {
+        let place = |shape| PlacedShape {
+            shape,
+            to_group: DAffine3::IDENTITY,
+            material: MaterialId(0),
+            organ: OrganId(0),
+        };
+        let shapes = shapes.into_iter().map(place).collect();
+        SceneDescription {
+            materials: vec![Material::lambert(Rgb::splat(0.5))],
+            groups: vec![Group {
+                shapes,
+                instances: vec![],
+            }],
+            root: Some(GroupId(0)),
+            ..SceneDescription::default()
+        }
+    }
+
+    fn completed(mut description: SceneDescription, flags: &[(&str, &str)]) -> SceneDescription {
+        let mut options = Options::default();
+        for (key, text) in flags {
+            options.set(key, text, Origin::Flag).unwrap();
+        }
+        complete(&mut description, &options);
+        description
+    }
+
+    fn plane_height(description: &SceneDescription) -> Option<f64> {
+        let plane = world_shapes(description).find(|placed| placed.shape == Shape::Plane)?;
+        Some(plane.to_group.translation.z)
+    }
+
+    const BALL: Shape = Shape::Sphere { radius: 1.0 };
+
+    #[test]
+    fn a_model_without_light_stands_in_daylight_on_a_plane() {
+        let given = completed(model(vec![BALL]), &[]);
+        assert!(given.environment.sun.is_some() && given.environment.sky != Sky::None);
+        assert_eq!(plane_height(&given), Some(0.0));
+        assert_eq!(
+            plane_height(&completed(SceneDescription::default(), &[])),
+            Some(0.0)
+        );
+        assert_eq!(
+            plane_height(&completed(model(vec![BALL]), &[("ground", "none")])),
+            None
+        );
+    }
+
+    #[test]
+    fn a_model_with_light_is_left_alone_unless_told() {
+        let mut lit = model(vec![BALL]);
+        lit.lights.push(Light::Point {
+            position: DVec3::Z,
+            intensity: Rgb::WHITE,
+        });
+        let given = completed(lit.clone(), &[]);
+        assert_eq!(
+            (
+                given.environment,
+                plane_height(&completed(lit.clone(), &[]))
+            ),
+            (Environment::default(), None)
+        );
+        assert!(
+            completed(lit.clone(), &[("sun", "90,30")])
+                .environment
+                .sun
+                .is_some()
+        );
+        assert_eq!(
+            plane_height(&completed(lit, &[("ground", "0.5,0.5,0.5")])),
+            Some(0.0)
+        );
+        let dark = completed(model(vec![BALL]), &[("sun", "none")]);
+        assert_eq!(
+            (plane_height(&dark), dark.environment),
+            (None, Environment::default())
+        );
+    }
+
+    #[test]
+    fn azimuths_are_those_of_the_compass() {
+        let east = completed(model(vec![BALL]), &[("sun", "90,30")]);
+        let to_sun = east.environment.sun.unwrap().to_sun;
+        assert!(
+            to_sun.x > 0.8 && to_sun.y.abs() < 1e-12 && to_sun.z > 0.4,
+            "{to_sun}"
+        );
+    }
+
+    #[test]
+    fn the_plane_lies_under_a_floor_of_the_model() {
+        let floor = Shape::Parallelogram {
+            corner: DVec3::new(-50.0, -50.0, 0.0),
+            edge_u: DVec3::X * 100.0,
+            edge_v: DVec3::Y * 100.0,
+        };
+        assert_eq!(
+            plane_height(&completed(model(vec![floor, BALL]), &[])),
+            Some(-0.1)
+        );
+        let own = completed(model(vec![Shape::Plane]), &[]);
+        assert_eq!(world_shapes(&own).count(), 1);
+    }
+}
