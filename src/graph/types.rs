@@ -117,6 +117,8 @@ pub struct NodeType {
     pub builtin: TypeId,
     /// All fields, inherited ones first.
     pub fields: Vec<Field>,
+    /// The fields that constructors fill, one list per constructor, shorter ones first. What is printed of a node.
+    pub constructors: Vec<Vec<FieldId>>,
     /// Ancestors from the topmost down to the type itself.
     lineage: Vec<TypeId>,
     /// The type itself and all that extend it, in table order.
@@ -217,6 +219,7 @@ impl TypeTable {
                 is_abstract,
                 builtin,
                 fields: vec![],
+                constructors: vec![],
                 lineage: vec![],
                 descendants: vec![],
                 template: vec![],
@@ -226,6 +229,7 @@ impl TypeTable {
         (new.name, new.parent, new.is_abstract, new.builtin) =
             (name.clone(), parent, is_abstract, builtin);
         new.descendants = vec![id];
+        new.constructors = vec![];
         new.lineage.push(id);
         for field in own_fields {
             new.add_field(field);
@@ -247,6 +251,11 @@ impl TypeTable {
             "fields must be complete before a type is extended"
         );
         ty.add_field(field)
+    }
+
+    /// Sets which fields the constructors of a type fill, shorter lists first.
+    pub fn set_constructors(&mut self, ty: TypeId, constructors: Vec<Vec<FieldId>>) {
+        self.types[usize::from(ty.0)].constructors = constructors;
     }
 
     /// Number of types.

@@ -17,7 +17,13 @@ pub fn types() -> TypeTable {
     let mut table = TypeTable::default();
     for ty in builtin_types() {
         let fields: Vec<NewField> = ty.fields.iter().map(new_field).collect();
-        table.add_builtin(ty.name, table.find(ty.parent), ty.is_abstract, &fields);
+        let id = table.add_builtin(ty.name, table.find(ty.parent), ty.is_abstract, &fields);
+        let field = |name: &&str| table.field(id, name);
+        let lists = ty
+            .constructors
+            .iter()
+            .map(|list| list.iter().filter_map(field).collect());
+        table.set_constructors(id, lists.collect());
     }
     table
 }

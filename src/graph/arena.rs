@@ -1,0 +1,135 @@
+//! Memory of a graph: words and objects of nodes, recycled block by block.
+
+/// No place in an arena.
+pub(super) const NIL: u32 = u32::MAX;
+
+/// Blocks of 32-bit words. Blocks of equal length are chained in a free list through their first word.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WordArena {
+    words: Vec<u32>,
+    /// First free block of each length, or [`NIL`].
+    free: Vec<u32>,
+}
+
+impl WordArena {
+    /// A block that holds a copy of `template`; 0 for an empty one.
+    pub(super) fn allocate(&mut self, template: &[u32]) -> u32 {
+        let length = template.len();
+        if length == 0 {
+            return 0;
+        }
+        let recycled = self.free.get(length).copied().filter(|&at| at != NIL);
+        if let Some(at) = recycled {
+            self.free[length] = self.words[at as usize];
+            self.words[at as usize..][..length].copy_from_slice(template);
+            return at;
+        }
+        let at = self.words.len() as u32;
+        self.words.extend_from_slice(template);
+        at
+    }
+
+    pub(super) fn release(&mut self, at: u32, length: usize) {
+        if length == 0 {
+            return;
+        }
+        if self.free.len() <= length {
+            self.free.resize(length + 1, NIL);
+        }
+        self.words[at as usize] = self.free[length];
+        self.free[length] = at;
+    }
+
+    pub(super) fn get(&self, at: u32) -> u32 {
+        self.words[at as usize]
+    }
+
+    pub(super) fn set(&mut self, at: u32, word: u32) {
+        self.words[at as usize] = word;
+    }
+
+    /// Words that hold something or are kept for reuse.
+    pub(super) fn len(&self) -> usize {
+        self.words.len()
+    }
+}
+
+/// Objects that words refer to by number; 0 is null and never stored.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ObjectArena<O> {
+    objects: Vec<O>,
+    free: Vec<u32>,
+}
+
+impl<O: Clone + Default> ObjectArena<O> {
+    pub(super) fn get(&self, number: u32) -> O {
+        if number == 0 {
+            O::default()
+        } else {
+            self.objects[number as usize - 1].clone()
+        }
+    }
+
+    pub(super) fn peek(&self, number: u32) -> Option<&O> {
+        self.objects.get((number as usize).checked_sub(1)?)
+    }
+
+    /// Stores `value` under `number` if that is not 0, else under a new number, which is returned.
+    pub(super) fn put(&mut self, number: u32, value: O) -> u32 {
+        if number != 0 {
+            self.objects[number as usize - 1] = value;
+            return number;
+        }
+        match self.free.pop() {
+            Some(number) => {
+                self.objects[number as usize - 1] = value;
+                number
+            }
+            None => {
+                self.objects.push(value);
+                self.objects.len() as u32
+            }
+        }
+    }
+
+    pub(super) fn release(&mut self, number: u32) {
+        if number != 0 {
+            self.objects[number as usize - 1] = O::default();
+            self.free.push(number);
+        }
+    }
+
+    pub(super) fn n_used(&self) -> usize {
+        self.objects.len() - self.free.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_of_equal_length_are_reused() {
+        let mut arena = WordArena::default();
+        let a = arena.allocate(&[1, 2, 3]);
+        let b = arena.allocate(&[4]);
+        arena.release(a, 3);
+        arena.release(b, 1);
+        assert_eq!(arena.allocate(&[7, 8, 9]), a);
+        assert_eq!((arena.get(a + 1), arena.len()), (8, 4));
+        let c = arena.allocate(&[7, 8, 9]);
+        assert_eq!(c, 4);
+    }
+
+    #[test]
+    fn objects_are_reused() {
+        let mut arena = ObjectArena::default();
+        let a = arena.put(0, "a".to_owned());
+        arena.release(a);
+        assert_eq!(arena.put(0, "b".to_owned()), a);
+        assert_eq!(
+            (arena.get(a), arena.get(0), arena.n_used()),
+            ("b".to_owned(), String::new(), 1)
+        );
+    }
+}

@@ -1,0 +1,97 @@
+//! Extents: all nodes of a type, in the order in which they became part of the graph.
+
+use super::arena::NIL;
+use super::store::{Graph, Header};
+use super::{NodeId, Payload, TypeId};
+
+/// Nodes of exactly one type.
+#[derive(Clone, Debug, Default)]
+struct Extent {
+    /// Node places in order of insertion; [`NIL`] where one was removed.
+    places: Vec<u32>,
+    n_removed: usize,
+}
+
+/// The extents of all types.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extents {
+    by_type: Vec<Extent>,
+}
+
+impl Extents {
+    pub(super) fn new(n_types: usize) -> Self {
+        Self {
+            by_type: vec![Extent::default(); n_types],
+        }
+    }
+
+    /// Adds a node at the end and returns its place.
+    pub(super) fn push(&mut self, ty: TypeId, index: u32) -> u32 {
+        let places = &mut self.by_type[usize::from(ty.0)].places;
+        places.push(index);
+        (places.len() - 1) as u32
+    }
+
+    /// Removes the node at a place; closes the gaps when they are more than half.
+    pub(super) fn remove(&mut self, ty: TypeId, place: u32, nodes: &mut [Header]) {
+        let extent = &mut self.by_type[usize::from(ty.0)];
+        extent.places[place as usize] = NIL;
+        extent.n_removed += 1;
+        if extent.n_removed * 2 <= extent.places.len() {
+            return;
+        }
+        extent.places.retain(|&index| index != NIL);
+        extent.n_removed = 0;
+        for (place, &index) in extent.places.iter().enumerate() {
+            nodes[index as usize].extent_place = place as u32;
+        }
+    }
+
+    fn exactly(&self, ty: TypeId) -> impl Iterator<Item = usize> {
+        let places = &self.by_type[usize::from(ty.0)].places;
+        places
+            .iter()
+            .filter(|&&index| index != NIL)
+            .map(|&index| index as usize)
+    }
+
+    fn count(&self, ty: TypeId) -> usize {
+        let extent = &self.by_type[usize::from(ty.0)];
+        extent.places.len() - extent.n_removed
+    }
+
+    pub(super) fn place(&self, ty: TypeId, place: u32) -> Option<u32> {
+        self.by_type[usize::from(ty.0)]
+            .places
+            .get(place as usize)
+            .copied()
+    }
+
+    pub(super) fn n_places(&self) -> usize {
+        self.by_type.iter().map(|e| e.places.len()).sum()
+    }
+}
+
+impl<O: Payload> Graph<O> {
+    /// The nodes of a type and of those that extend it: types in table order, nodes of each in order of insertion.
+    pub fn extent(&self, ty: TypeId) -> impl Iterator<Item = NodeId> {
+        let types = self.types()[ty].descendants().iter();
+        types
+            .flat_map(|&t| self.extents.exactly(t))
+            .map(|index| self.id(index))
+    }
+
+    /// Number of nodes of a type and of those that extend it.
+    pub fn count(&self, ty: TypeId) -> usize {
+        self.types()[ty]
+            .descendants()
+            .iter()
+            .map(|&t| self.extents.count(t))
+            .sum()
+    }
+
+    /// Number of nodes of exactly this type.
+    pub fn count_exactly(&self, ty: TypeId) -> usize {
+        self.extents.count(ty)
+    }
+}
