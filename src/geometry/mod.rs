@@ -1,6 +1,15 @@
 //! Shapes and what a ray finds on them, each shape in a frame of its own.
 //!
 //! A shape is exact (no tessellation). Axes run along local +z from the origin, as GroIMP's primitives do.
+//!
+//! The files beside this one hold what a ray needs: [`triangle`] and parallelogram tests that leave no gap
+//! between neighbours, and the [`unit`] forms (sphere, disk, frustum, box) to which every other placed shape is an affine
+//! image. All of it is `f64`.
+
+pub mod interval;
+pub mod quadratic;
+pub mod triangle;
+pub mod unit;
 
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
