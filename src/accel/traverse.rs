@@ -44,11 +44,12 @@ impl BoxRay {
         }
     }
 
-    /// The parameter `t` of the line in the scaled parameter of the box tests, rounded up.
+    /// The parameter `t` of the line in the scaled parameter of the box tests, rounded up; always finite, because
+    /// a box beside a ray that is parallel to it is entered at infinity.
     #[inline]
     #[must_use]
     pub fn limit(&self, t: f64) -> f32 {
-        (t * self.scale) as f32 * BOX_SLACK
+        ((t * self.scale) as f32 * BOX_SLACK).min(f32::MAX)
     }
 }
 

@@ -6,8 +6,10 @@
 //! between neighbours, and the [`unit`] forms (sphere, disk, frustum, box) to which every other placed shape is an affine
 //! image. All of it is `f64`.
 
+pub mod area;
 pub mod interval;
 pub mod quadratic;
+pub mod reduce;
 pub mod triangle;
 pub mod unit;
 

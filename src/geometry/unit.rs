@@ -6,9 +6,10 @@
 
 use super::interval::{Interval, Line};
 use super::quadratic::roots;
+use crate::math::Bounds3;
 use crate::math::functions::{acos, atan2};
 use crate::math::tolerance::RIM_OVERLAP;
-use glam::{DVec2, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// A shape of unit size.
@@ -96,13 +97,30 @@ impl UnitShape {
         }
     }
 
-    /// The corners of a box that holds the shape.
+    /// The smallest box that holds the image of the shape under `map`.
     #[must_use]
-    pub fn bounds(&self) -> [DVec3; 2] {
+    pub fn bounds_under(&self, map: &DAffine3) -> Bounds3 {
+        let [x, y, z] = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
+        // The extent of an ellipse or ellipsoid along an axis is the root of the summed squares of its radii there.
+        let rows = map.matrix3.transpose();
+        let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
+        let disk = |height: f64, radius: f64| {
+            let center = map.translation + z * height;
+            let reach = DVec3::from_array(rows.map(|row| row.truncate().length())) * radius;
+            Bounds3 {
+                min: center - reach,
+                max: center + reach,
+            }
+        };
+        let around = |reach: DVec3| Bounds3 {
+            min: map.translation - reach,
+            max: map.translation + reach,
+        };
         match self {
-            Self::Sphere | Self::Cube => [DVec3::NEG_ONE, DVec3::ONE],
-            Self::Disk => [DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)],
-            Self::Frustum(_) => [DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE],
+            Self::Sphere => around(DVec3::from_array(rows.map(DVec3::length))),
+            Self::Cube => around(x.abs() + y.abs() + z.abs()),
+            Self::Disk => disk(0.0, 1.0),
+            Self::Frustum(frustum) => disk(0.0, frustum.base).union(&disk(1.0, frustum.top)),
         }
     }
 }

@@ -1,7 +1,224 @@
 //! The world as light sees it: immutable once built, ignorant of grammars.
 //!
 //! ```text
-//! SceneDescription (f64 data) → Scene::build → Scene { closest, occluded, surface, lights, bounds }
+//! SceneDescription (f64 data) → Scene::build → Scene { closest, transmittance, surface, emitters, lights, bounds }
+//!   plan      which groups stay groups
+//!   bake      each group in a frame of its own, with a hierarchy over it
+//!   query     what a ray meets
+//!   surface   what shading needs to know there
+//!   emitter   surfaces that shine, for sampling
+//! ```
+//! Groups within groups are never copied: a ray is carried into the frame of each instance it enters. A primitive of the
+//! world is therefore not stored anywhere; its number, a [`PrimitiveId`](crate::math::PrimitiveId), counts through all
+//! instances and is taken apart again when a hit is shaded.
+//!
+//! ```
+//! use glam::{DAffine3, DVec3};
+//! use understory::geometry::Shape;
+//! use understory::material::Material;
+//! use understory::math::Ray;
+//! use understory::scene::Scene;
+//! use understory::scene::description::*;
+//!
+//! let ball = PlacedShape {
+//!     shape: Shape::Sphere { radius: 1.0 },
+//!     to_group: DAffine3::IDENTITY,
+//!     material: MaterialId(0),
+//!     organ: OrganId(7),
+//! };
+//! let scene = Scene::build(SceneDescription {
+//!     materials: vec![Material::default()],
+//!     groups: vec![Group { shapes: vec![ball], instances: vec![] }],
+//!     root: Some(GroupId(0)),
+//!     ..Default::default()
+//! })?;
+//! let ray = Ray::new(DVec3::new(0.0, -5.0, 0.0), DVec3::Y);
+//! let hit = scene.closest(&ray).expect("the ray points at the ball");
+//! assert_eq!(hit.t, 4.0);
+//! assert_eq!(scene.surface(&ray, &hit).organ, OrganId(7));
+//! # Ok::<(), understory::scene::SceneError>(())
 //! ```
 
+mod bake;
 pub mod description;
+mod emitter;
+mod error;
+mod group;
+mod plan;
+mod query;
+mod surface;
+mod validate;
+
+pub use emitter::{Emitter, EmitterId, EmitterSample};
+pub use error::{Problem, SceneError};
+pub use query::Hit;
+pub use surface::SurfacePoint;
+
+use crate::light::{Environment, Light};
+use crate::material::Material;
+use crate::math::Bounds3;
+use bake::WorldPlane;
+use description::{MaterialId, SceneDescription};
+use glam::DAffine3;
+use group::Group;
+use rayon::prelude::*;
+
+/// A world ready for rays.
+#[derive(Debug)]
+pub struct Scene {
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    environment: Environment,
+    /// Each group after all it refers to; the root is the last.
+    groups: Vec<Group>,
+    /// From world coordinates to the root's frame.
+    to_root: DAffine3,
+    planes: Vec<WorldPlane>,
+    /// Sorted by primitive.
+    emitters: Vec<Emitter>,
+    bounds: Bounds3,
+}
+
+/// How large a scene is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneStats {
+    /// Groups that are stored.
+    pub groups: usize,
+    /// Primitives that are stored.
+    pub primitives: usize,
+    /// Instances that are stored.
+    pub instances: usize,
+    /// Primitives in the world, each as often as it is seen.
+    pub world_primitives: u64,
+    /// Infinite planes.
+    pub planes: usize,
+    /// Primitives in the world that shine.
+    pub emitters: usize,
+    /// Memory of groups and hierarchies, in bytes.
+    pub bytes: usize,
+    /// The part of `bytes` that instances cost, with their share of the hierarchies.
+    pub instance_bytes: usize,
+}
+
+impl Scene {
+    /// Checks a description and prepares it for rays. Parallel; the result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// The first thing that cannot be part of a scene, naming its organ.
+    pub fn build(description: SceneDescription) -> Result<Self, SceneError> {
+        for (index, material) in description.materials.iter().enumerate() {
+            material
+                .validate()
+                .map_err(|source| SceneError::Material { index, source })?;
+        }
+        let plan = plan::plan(&description)?;
+        let groups = bake_all(&plan, &description.materials)?;
+        let planes = bake::world_planes(&plan.groups)?;
+        drop(plan);
+
+        let (to_root, bounds) = match groups.last() {
+            Some(root) => {
+                let to_world = root.frame.to_group();
+                (to_world.inverse(), root.bounds.transformed(&to_world))
+            }
+            None => (DAffine3::IDENTITY, Bounds3::EMPTY),
+        };
+        let mut scene = Self {
+            materials: description.materials,
+            lights: description.lights,
+            environment: description.environment,
+            groups,
+            to_root,
+            planes,
+            emitters: Vec::new(),
+            bounds,
+        };
+        scene.emitters = emitter::collect(&scene)?;
+        Ok(scene)
+    }
+
+    /// The materials, by [`MaterialId`].
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// One material.
+    #[must_use]
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
+    }
+
+    /// Light sources that are not surfaces.
+    #[must_use]
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// Light from infinitely far away.
+    #[must_use]
+    pub fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    /// A box, in metres, that holds everything but infinite planes, wider by a few millionths; empty if there is nothing.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds3 {
+        self.bounds
+    }
+
+    /// All primitives that shine, wherever instances put them, except infinite planes.
+    #[must_use]
+    pub fn emitters(&self) -> &[Emitter] {
+        &self.emitters
+    }
+
+    /// How large the scene is.
+    #[must_use]
+    pub fn stats(&self) -> SceneStats {
+        let mut stats = SceneStats {
+            groups: self.groups.len(),
+            planes: self.planes.len(),
+            emitters: self.emitters.len(),
+            world_primitives: self.groups.last().map_or(0, |root| root.total),
+            ..SceneStats::default()
+        };
+        for group in &self.groups {
+            stats.primitives += group.places.len();
+            stats.instances += group.instances.len();
+            stats.bytes += group.bytes();
+            let shared = group.bvh.bytes() + size_of_val(&*group.items);
+            let share = group.instances.len() as f64 / group.items.len().max(1) as f64;
+            stats.instance_bytes +=
+                size_of_val(&*group.instances) + (shared as f64 * share) as usize;
+        }
+        stats
+    }
+
+    /// The fraction of light that meets surfaces of a material at all.
+    #[inline]
+    fn alpha(&self, id: MaterialId) -> f64 {
+        self.materials[id.0 as usize].alpha
+    }
+}
+
+/// Bakes the groups level by level, those of one level in parallel.
+fn bake_all(plan: &plan::Plan, materials: &[Material]) -> Result<Vec<Group>, SceneError> {
+    let mut built: Vec<Group> = Vec::with_capacity(plan.groups.len());
+    while built.len() < plan.groups.len() {
+        // Groups stand after what they refer to, so a run that refers only to what is built can be built at once.
+        let ready = plan.groups[built.len()..]
+            .iter()
+            .take_while(|group| group.instances.iter().all(|to| to.group < built.len()))
+            .count();
+        let run = &plan.groups[built.len()..built.len() + ready];
+        let baked: Vec<_> = run
+            .par_iter()
+            .map(|group| bake::bake(group, &built, materials))
+            .collect();
+        for group in baked {
+            built.push(group?);
+        }
+    }
+    Ok(built)
+}

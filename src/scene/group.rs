@@ -1,0 +1,202 @@
+//! A group as rays see it: its primitives in a frame of its own, and a hierarchy over them.
+
+use super::description::{MaterialId, OrganId};
+use crate::accel::Bvh;
+use crate::geometry::TriangleMesh;
+use crate::geometry::unit::UnitShape;
+use crate::math::Bounds3;
+use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
+
+/// The frame in which a group is stored: its middle at the origin, its diagonal between 2¹² and 2¹³.
+///
+/// The scale is a power of two, so nothing is rounded by it; subtracting the middle only takes digits away that its size
+/// does not need. In this frame `f32` boxes serve a bud as well as a landscape, and a bud a million metres from the origin
+/// as well as one at it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct GroupFrame {
+    pub(super) center: DVec3,
+    pub(super) scale: f64,
+}
+
+impl GroupFrame {
+    /// `map`, a map into the group's own coordinates, followed by the change to this frame.
+    pub(super) fn after(&self, map: &DAffine3) -> DAffine3 {
+        DAffine3 {
+            matrix3: map.matrix3 * self.scale,
+            translation: (map.translation - self.center) * self.scale,
+        }
+    }
+
+    /// From this frame to the group's own coordinates.
+    pub(super) fn to_group(self) -> DAffine3 {
+        DAffine3 {
+            matrix3: DMat3::from_diagonal(DVec3::splat(1.0 / self.scale)),
+            translation: self.center,
+        }
+    }
+}
+
+/// A group ready for rays. All coordinates are in its [`GroupFrame`].
+#[derive(Debug)]
+pub(super) struct Group {
+    pub(super) frame: GroupFrame,
+    /// The box of everything in it, widened like all stored boxes; empty if it holds nothing.
+    pub(super) bounds: Bounds3,
+    pub(super) vertices: Vec<DVec3>,
+    pub(super) triangles: Vec<Triangle>,
+    pub(super) quads: Vec<Quad>,
+    pub(super) solids: Vec<Solid>,
+    pub(super) instances: Vec<PlacedGroup>,
+    /// What the leaves of `bvh` hold, in their order.
+    pub(super) items: Vec<Item>,
+    /// Where each primitive of this group is stored, by number; `None` if it has no area.
+    pub(super) places: Vec<Option<Item>>,
+    /// Sorted by the number of the first primitive.
+    pub(super) shapes: Vec<ShapeRecord>,
+    pub(super) meshes: Vec<MeshShading>,
+    pub(super) bvh: Bvh,
+    /// Primitives of this group and, once per instance, of all groups below; numbers of primitives are below it.
+    pub(super) total: u64,
+    /// Whether no surface in it or below lets light straight through.
+    pub(super) is_opaque: bool,
+}
+
+/// A stored thing: a kind in the upper two bits, an index into the list of that kind in the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Item(std::num::NonZeroU32);
+
+/// An [`Item`], taken apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ItemKind {
+    Triangle(usize),
+    Quad(usize),
+    Solid(usize),
+    Instance(usize),
+}
+
+impl Item {
+    /// How many things of one kind a group may hold.
+    pub(super) const LIMIT: usize = (1 << 30) - 1;
+
+    pub(super) fn new(kind: ItemKind) -> Self {
+        let (tag, index) = match kind {
+            ItemKind::Triangle(index) => (0, index),
+            ItemKind::Quad(index) => (1, index),
+            ItemKind::Solid(index) => (2, index),
+            ItemKind::Instance(index) => (3, index),
+        };
+        // One is added so that no item is 0.
+        let bits = tag << 30 | (index as u32 + 1);
+        Self(std::num::NonZeroU32::new(bits).expect("invariant: index + 1 is below 2^30"))
+    }
+
+    #[inline]
+    pub(super) fn kind(self) -> ItemKind {
+        let bits = self.0.get();
+        let index = (bits & 0x3fff_ffff) as usize - 1;
+        match bits >> 30 {
+            0 => ItemKind::Triangle(index),
+            1 => ItemKind::Quad(index),
+            2 => ItemKind::Solid(index),
+            _ => ItemKind::Instance(index),
+        }
+    }
+}
+
+/// A triangle of a mesh: indices of its corners, and its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Triangle {
+    pub(super) corners: [u32; 3],
+    pub(super) number: u32,
+}
+
+/// A parallelogram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quad {
+    pub(super) corner: DVec3,
+    pub(super) edges: [DVec3; 2],
+    pub(super) number: u32,
+}
+
+/// A unit shape under an affine map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Solid {
+    /// From the group's frame to the unit shape's.
+    pub(super) to_unit: DAffine3,
+    pub(super) form: UnitShape,
+    pub(super) number: u32,
+}
+
+/// Another group, placed in this one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PlacedGroup {
+    /// From this group's frame to that group's.
+    pub(super) to_child: DAffine3,
+    /// Number, in this group, of the placed group's first primitive.
+    pub(super) first: u64,
+    /// Which group, by its place in the scene.
+    pub(super) group: u32,
+    pub(super) organ: OrganId,
+}
+
+/// What all primitives of one shape have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ShapeRecord {
+    /// Number of its first primitive.
+    pub(super) first: u32,
+    pub(super) material: MaterialId,
+    pub(super) organ: OrganId,
+    pub(super) instance_organ: Option<OrganId>,
+    /// Index into the group's `meshes`, if it has shading normals or texture coordinates.
+    pub(super) mesh: Option<u32>,
+    /// Whether it was mirrored, so that the front of flat primitives is where corners run clockwise.
+    pub(super) is_mirrored: bool,
+}
+
+/// What shading wants to know of a mesh beyond its triangles.
+#[derive(Debug)]
+pub(super) struct MeshShading {
+    pub(super) mesh: Arc<TriangleMesh>,
+    /// From normals of the mesh to normals in the group's frame, up to length.
+    pub(super) normal_map: DMat3,
+}
+
+impl Group {
+    /// The shape that primitive `number` belongs to.
+    pub(super) fn shape_of(&self, number: u32) -> &ShapeRecord {
+        let after = self.shapes.partition_point(|shape| shape.first <= number);
+        &self.shapes[after.saturating_sub(1)]
+    }
+
+    /// The instance that primitive `number` lies in, which must not be the group's own.
+    pub(super) fn instance_of(&self, number: u64) -> &PlacedGroup {
+        let after = self
+            .instances
+            .partition_point(|instance| instance.first <= number);
+        &self.instances[after.saturating_sub(1)]
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
+        triangle
+            .corners
+            .map(|corner| self.vertices[corner as usize])
+    }
+
+    /// Memory it occupies, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Self>()
+            + size_of_val(&*self.vertices)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.quads)
+            + size_of_val(&*self.solids)
+            + size_of_val(&*self.instances)
+            + size_of_val(&*self.items)
+            + size_of_val(&*self.places)
+            + size_of_val(&*self.shapes)
+            + size_of_val(&*self.meshes)
+            + self.bvh.bytes()
+    }
+}

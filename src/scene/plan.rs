@@ -1,0 +1,204 @@
+//! Deciding which groups stay groups.
+//!
+//! Entering an instance costs a change of frame and a walk of its own, so groups that save nothing dissolve into the groups
+//! that use them: those used once, and those with so few primitives that an instance is not smaller than its contents.
+
+use super::description::{
+    Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
+};
+use super::error::{Problem, SceneError};
+use super::validate::check_placement;
+use crate::geometry::Shape;
+use glam::DAffine3;
+
+/// Groups of at most this many primitives, and without instances of their own, dissolve wherever they are used.
+const SMALL: usize = 16;
+/// How deep the groups that stay may be nested.
+pub(super) const MAX_DEPTH: usize = 16;
+
+/// The groups that stay, each after all the groups it refers to; the root is the last.
+pub(super) struct Plan<'a> {
+    pub(super) groups: Vec<PlannedGroup<'a>>,
+}
+
+/// A group that stays, with the contents of all that dissolved into it.
+pub(super) struct PlannedGroup<'a> {
+    pub(super) shapes: Vec<PlannedShape<'a>>,
+    pub(super) instances: Vec<PlannedInstance>,
+    /// 0 if it has no instances, otherwise one more than the highest of what it refers to.
+    pub(super) height: usize,
+}
+
+/// A shape in a group that stays.
+#[derive(Clone, Copy)]
+pub(super) struct PlannedShape<'a> {
+    pub(super) shape: &'a Shape,
+    pub(super) to_group: DAffine3,
+    pub(super) material: MaterialId,
+    pub(super) organ: OrganId,
+    /// The outermost instance that dissolved above it.
+    pub(super) instance_organ: Option<OrganId>,
+}
+
+/// An instance of a group that stays.
+pub(super) struct PlannedInstance {
+    /// Index into [`Plan::groups`].
+    pub(super) group: usize,
+    pub(super) to_group: DAffine3,
+    /// The outermost instance that dissolved above it, or itself.
+    pub(super) organ: OrganId,
+}
+
+/// Plans the groups that the root reaches. Empty if there is no root.
+pub(super) fn plan(description: &SceneDescription) -> Result<Plan<'_>, SceneError> {
+    let Some(root) = description.root else {
+        return Ok(Plan { groups: Vec::new() });
+    };
+    if root.0 as usize >= description.groups.len() {
+        return Err(SceneError::NoRoot(root.0));
+    }
+    let order = children_first(&description.groups, root)?;
+    let dissolves = which_dissolve(&description.groups, root, &order);
+
+    let mut places = vec![usize::MAX; description.groups.len()];
+    let mut groups: Vec<PlannedGroup> = Vec::new();
+    for group in order.into_iter().filter(|group| !dissolves[*group]) {
+        let planned = gather(&description.groups, group, &dissolves, &places, &groups)?;
+        if planned.height > MAX_DEPTH {
+            return Err(SceneError::TooDeep { limit: MAX_DEPTH });
+        }
+        places[group] = groups.len();
+        groups.push(planned);
+    }
+    Ok(Plan { groups })
+}
+
+/// All groups that `root` reaches, each after those it refers to.
+fn children_first(groups: &[Group], root: GroupId) -> Result<Vec<usize>, SceneError> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mark {
+        New,
+        Open,
+        Done,
+    }
+    let mut marks = vec![Mark::New; groups.len()];
+    let mut order = Vec::new();
+    // Groups being visited, with the number of the next instance to follow.
+    let mut open = vec![(root.0 as usize, 0)];
+    marks[root.0 as usize] = Mark::Open;
+    while let Some((group, next)) = open.last_mut() {
+        let Some(instance) = groups[*group].instances.get(*next) else {
+            marks[*group] = Mark::Done;
+            order.push(*group);
+            open.pop();
+            continue;
+        };
+        *next += 1;
+        let child = instance.group.0 as usize;
+        match marks.get(child) {
+            None => return Err(at(instance, Problem::NoGroup(instance.group.0))),
+            Some(Mark::Open) => return Err(at(instance, Problem::Cycle(instance.group.0))),
+            Some(Mark::Done) => {}
+            Some(Mark::New) => {
+                marks[child] = Mark::Open;
+                open.push((child, 0));
+            }
+        }
+    }
+    Ok(order)
+}
+
+fn at(instance: &Instance, problem: Problem) -> SceneError {
+    SceneError::Organ {
+        organ: instance.organ,
+        problem,
+    }
+}
+
+/// For each group, whether it dissolves into those that refer to it.
+fn which_dissolve(groups: &[Group], root: GroupId, order: &[usize]) -> Vec<bool> {
+    let mut uses = vec![0_usize; groups.len()];
+    for group in order {
+        for instance in &groups[*group].instances {
+            uses[instance.group.0 as usize] += 1;
+        }
+    }
+    // Primitives of a group with all that dissolved into it, or `None` if instances remain in it.
+    let mut sizes: Vec<Option<usize>> = vec![Some(0); groups.len()];
+    let mut dissolves = vec![false; groups.len()];
+    for &group in order {
+        let own = groups[group]
+            .shapes
+            .iter()
+            .map(|placed| primitive_count(&placed.shape))
+            .sum();
+        sizes[group] = groups[group]
+            .instances
+            .iter()
+            .try_fold(own, |sum: usize, instance| {
+                let child = instance.group.0 as usize;
+                dissolves[child].then_some(sum.saturating_add(sizes[child]?))
+            });
+        let is_small = sizes[group].is_some_and(|size| size <= SMALL);
+        dissolves[group] = group != root.0 as usize && (uses[group] == 1 || is_small);
+    }
+    dissolves
+}
+
+/// How many primitives a shape becomes.
+pub(super) fn primitive_count(shape: &Shape) -> usize {
+    match shape {
+        Shape::Mesh(mesh) => mesh.triangles.len(),
+        _ => 1,
+    }
+}
+
+/// Collects the contents of a group and of all that dissolve into it.
+fn gather<'a>(
+    groups: &'a [Group],
+    group: usize,
+    dissolves: &[bool],
+    places: &[usize],
+    planned: &[PlannedGroup],
+) -> Result<PlannedGroup<'a>, SceneError> {
+    let mut gathered = PlannedGroup {
+        shapes: Vec::new(),
+        instances: Vec::new(),
+        height: 0,
+    };
+    let mut open = vec![(group, DAffine3::IDENTITY, None)];
+    while let Some((group, to_group, outer)) = open.pop() {
+        gathered
+            .shapes
+            .extend(
+                groups[group]
+                    .shapes
+                    .iter()
+                    .map(|placed: &PlacedShape| PlannedShape {
+                        shape: &placed.shape,
+                        to_group: to_group * placed.to_group,
+                        material: placed.material,
+                        organ: placed.organ,
+                        instance_organ: outer,
+                    }),
+            );
+        for instance in &groups[group].instances {
+            check_placement(&instance.to_group, instance.organ)?;
+            let child = instance.group.0 as usize;
+            let organ = outer.unwrap_or(instance.organ);
+            let to_group = to_group * instance.to_group;
+            if dissolves[child] {
+                open.push((child, to_group, Some(organ)));
+            } else {
+                let place = places[child];
+                gathered.height = gathered.height.max(planned[place].height + 1);
+                gathered.instances.push(PlannedInstance {
+                    group: place,
+                    to_group,
+                    organ,
+                });
+            }
+        }
+    }
+    Ok(gathered)
+}

@@ -1,0 +1,305 @@
+//! What shading needs to know of a hit.
+
+use super::Scene;
+use super::description::{MaterialId, OrganId};
+use super::group::{Group, Item, ItemKind, MeshShading, PlacedGroup, ShapeRecord};
+use super::plan::MAX_DEPTH;
+use super::query::{FIRST_PLANE, Hit};
+use crate::math::tolerance::{SHADOW_GAP, SPAWN_SAFETY, gamma};
+use crate::math::{PrimitiveId, Ray};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+
+/// A point of a surface, seen along a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Where it is, in world coordinates, metres.
+    pub position: DVec3,
+    /// Bound on the error of each coordinate of `position`, in metres, with what carrying it back into the frame of its
+    /// primitive may add.
+    pub error: DVec3,
+    /// Geometric normal: unit, on the front side.
+    pub normal_g: DVec3,
+    /// Shading normal: unit, interpolated if the mesh has normals per corner, otherwise the geometric one.
+    pub normal_s: DVec3,
+    /// Texture coordinates: of the mesh; turns round the axis and height for round shapes; 0..=1 across flat ones; metres
+    /// for planes.
+    pub uv: DVec2,
+    /// The material.
+    pub material: MaterialId,
+    /// The organ.
+    pub organ: OrganId,
+    /// The organ that made the outermost instance around the point, if there is one.
+    pub instance_organ: Option<OrganId>,
+    /// Whether the ray came from the front.
+    pub is_front: bool,
+    /// The primitive.
+    pub primitive: PrimitiveId,
+    /// Whether the primitive is flat, so that a ray from here cannot meet it again.
+    is_flat: bool,
+}
+
+impl SurfacePoint {
+    /// A ray that leaves the surface in a unit direction, to the side that the direction points to.
+    ///
+    /// It starts off the surface by a multiple of the carried error and cannot meet the primitive again if that is flat.
+    #[must_use]
+    pub fn spawn_ray(&self, direction: DVec3) -> Ray {
+        self.ray_from(self.start(direction), direction)
+    }
+
+    /// A ray from the surface to a point, ending just before it. If the point is where the ray starts, it has length 0 and
+    /// meets nothing.
+    #[must_use]
+    pub fn spawn_ray_to(&self, target: DVec3) -> Ray {
+        let start = self.start(target - self.position);
+        let distance = (target - start).length();
+        let direction = (target - start).try_normalize().unwrap_or(self.normal_g);
+        // How far the rounding of the target's coordinates may have moved it.
+        let blur = gamma(16) * (target.abs().max_element() + start.abs().max_element());
+        let t_max = (distance * (1.0 - SHADOW_GAP) - blur).max(0.0);
+        Ray {
+            t_max,
+            ..self.ray_from(start, direction)
+        }
+    }
+
+    fn ray_from(&self, start: DVec3, direction: DVec3) -> Ray {
+        let skip = if self.is_flat {
+            self.primitive
+        } else {
+            PrimitiveId::NONE
+        };
+        Ray {
+            skip,
+            ..Ray::new(start, direction)
+        }
+    }
+
+    /// The position, moved off the surface to the side of `direction`.
+    fn start(&self, direction: DVec3) -> DVec3 {
+        let distance = SPAWN_SAFETY * self.error.dot(self.normal_g.abs());
+        self.position + self.normal_g * distance.copysign(direction.dot(self.normal_g))
+    }
+}
+
+/// A point in the frame of a group, or of the world.
+struct LocalPoint {
+    position: DVec3,
+    error: DVec3,
+    normal_g: DVec3,
+    normal_s: DVec3,
+    uv: DVec2,
+    is_flat: bool,
+}
+
+impl LocalPoint {
+    /// Carries the point out of a frame, given the map into it.
+    fn leave(self, into: &DAffine3) -> Self {
+        let out = into.inverse();
+        let position = out.transform_point3(self.position);
+        // The error made on the way out, and the error that carrying the result in again will make.
+        let made = absolute(&out.matrix3) * self.position.abs() + out.translation.abs();
+        let again = absolute(&into.matrix3) * position.abs() + into.translation.abs();
+        let inside = self.error + again * gamma(4);
+        let normal = |n: DVec3| (into.matrix3.transpose() * n).normalize();
+        Self {
+            position,
+            error: absolute(&out.matrix3) * inside + made * gamma(4),
+            normal_g: normal(self.normal_g),
+            normal_s: normal(self.normal_s),
+            ..self
+        }
+    }
+}
+
+fn absolute(matrix: &DMat3) -> DMat3 {
+    DMat3::from_cols(
+        matrix.x_axis.abs(),
+        matrix.y_axis.abs(),
+        matrix.z_axis.abs(),
+    )
+}
+
+/// A primitive with the way to it from the world.
+pub(super) struct Located<'s> {
+    pub(super) group: &'s Group,
+    pub(super) number: u32,
+    depth: usize,
+    path: [Option<&'s PlacedGroup>; MAX_DEPTH],
+}
+
+impl Located<'_> {
+    /// The maps on the way in, each from one frame to the next, the first from the world.
+    pub(super) fn maps(&self, to_root: &DAffine3) -> impl DoubleEndedIterator<Item = DAffine3> {
+        let inner = self.path[..self.depth]
+            .iter()
+            .flatten()
+            .map(|instance| instance.to_child);
+        std::iter::once(*to_root).chain(inner)
+    }
+
+    /// The organ of the outermost instance.
+    pub(super) fn instance_organ(&self) -> Option<OrganId> {
+        let outermost = self.path[0].map(|instance| instance.organ);
+        outermost.or(self.group.shape_of(self.number).instance_organ)
+    }
+}
+
+impl Scene {
+    /// What shading needs to know of `hit`, a result of [`Scene::closest`] for this `ray`.
+    #[must_use]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        if hit.primitive.0 >= FIRST_PLANE {
+            return self.plane_surface(ray, hit);
+        }
+        let located = self.locate(hit.primitive);
+        let shape = located.group.shape_of(located.number);
+        let mut local = match located.group.places[located.number as usize].map(Item::kind) {
+            Some(ItemKind::Triangle(index)) => triangle_point(located.group, shape, index, hit),
+            Some(ItemKind::Quad(index)) => quad_point(located.group, shape, index, hit),
+            Some(ItemKind::Solid(index)) => {
+                let maps = located.maps(&self.to_root);
+                let near = maps.fold(ray.at(hit.t), |point, map| map.transform_point3(point));
+                solid_point(located.group, index, hit, near)
+            }
+            Some(ItemKind::Instance(_)) | None => {
+                unreachable!("invariant: only stored primitives are hit")
+            }
+        };
+        for map in located.maps(&self.to_root).rev() {
+            local = local.leave(&map);
+        }
+        finish(local, shape, located.instance_organ(), ray, hit)
+    }
+
+    fn plane_surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let plane = &self.planes[(hit.primitive.0 - FIRST_PLANE) as usize];
+        let local = LocalPoint {
+            position: DVec3::new(hit.u, hit.v, 0.0),
+            error: DVec3::new(hit.u.abs(), hit.v.abs(), 0.0) * gamma(4),
+            normal_g: DVec3::Z,
+            normal_s: DVec3::Z,
+            uv: DVec2::new(hit.u, hit.v),
+            is_flat: true,
+        };
+        let local = local.leave(&plane.to_plane);
+        finish(local, &plane.shape, plane.shape.instance_organ, ray, hit)
+    }
+
+    /// Takes the number of a primitive apart, which must not be a plane's.
+    pub(super) fn locate(&self, primitive: PrimitiveId) -> Located<'_> {
+        let root = &self.groups[self.groups.len() - 1];
+        let mut located = Located {
+            group: root,
+            number: 0,
+            depth: 0,
+            path: [None; MAX_DEPTH],
+        };
+        let mut number = primitive.0;
+        while number >= located.group.places.len() as u64 {
+            let instance = located.group.instance_of(number);
+            number -= instance.first;
+            located.path[located.depth] = Some(instance);
+            located.depth += 1;
+            located.group = &self.groups[instance.group as usize];
+        }
+        located.number = number as u32;
+        located
+    }
+}
+
+fn finish(
+    local: LocalPoint,
+    shape: &ShapeRecord,
+    instance_organ: Option<OrganId>,
+    ray: &Ray,
+    hit: &Hit,
+) -> SurfacePoint {
+    SurfacePoint {
+        position: local.position,
+        error: local.error,
+        normal_g: local.normal_g,
+        normal_s: local.normal_s,
+        uv: local.uv,
+        material: shape.material,
+        organ: shape.organ,
+        instance_organ,
+        is_front: ray.direction.dot(local.normal_g) < 0.0,
+        primitive: hit.primitive,
+        is_flat: local.is_flat,
+    }
+}
+
+/// +1, or -1 for a mirrored shape, whose corners run the other way round.
+fn orientation(shape: &ShapeRecord) -> f64 {
+    if shape.is_mirrored { -1.0 } else { 1.0 }
+}
+
+fn triangle_point(group: &Group, shape: &ShapeRecord, index: usize, hit: &Hit) -> LocalPoint {
+    let triangle = &group.triangles[index];
+    let corners = group.corners(triangle);
+    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    let parts: [DVec3; 3] = std::array::from_fn(|corner| corners[corner] * weights[corner]);
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize();
+    let normal_g = normal * orientation(shape);
+    let mut point = LocalPoint {
+        position: parts[0] + parts[1] + parts[2],
+        error: (parts[0].abs() + parts[1].abs() + parts[2].abs()) * gamma(7),
+        normal_g,
+        normal_s: normal_g,
+        uv: DVec2::new(hit.u, hit.v),
+        is_flat: true,
+    };
+    if let Some(mesh) = shape.mesh {
+        let number = (triangle.number - shape.first) as usize;
+        shade_mesh(&mut point, &group.meshes[mesh as usize], number, weights);
+    }
+    point
+}
+
+/// Replaces shading normal and texture coordinates by those of the mesh, where it has any.
+fn shade_mesh(point: &mut LocalPoint, shading: &MeshShading, triangle: usize, weights: [f64; 3]) {
+    let mesh = &shading.mesh;
+    let corners = mesh.triangles[triangle].map(|corner| corner as usize);
+    if !mesh.normals.is_empty() {
+        let normal: DVec3 = (0..3).map(|i| mesh.normals[corners[i]] * weights[i]).sum();
+        let normal = shading.normal_map * normal;
+        point.normal_s = normal.try_normalize().unwrap_or(point.normal_g);
+    }
+    if !mesh.uvs.is_empty() {
+        point.uv = (0..3).map(|i| mesh.uvs[corners[i]] * weights[i]).sum();
+    }
+}
+
+fn quad_point(group: &Group, shape: &ShapeRecord, index: usize, hit: &Hit) -> LocalPoint {
+    let quad = &group.quads[index];
+    let (along_u, along_v) = (quad.edges[0] * hit.u, quad.edges[1] * hit.v);
+    let normal_g = quad.edges[0].cross(quad.edges[1]).normalize() * orientation(shape);
+    LocalPoint {
+        position: quad.corner + along_u + along_v,
+        error: (quad.corner.abs() + along_u.abs() + along_v.abs()) * gamma(7),
+        normal_g,
+        normal_s: normal_g,
+        uv: DVec2::new(hit.u, hit.v),
+        is_flat: true,
+    }
+}
+
+fn solid_point(group: &Group, index: usize, hit: &Hit, near: DVec3) -> LocalPoint {
+    let solid = &group.solids[index];
+    let point = solid
+        .form
+        .point(hit.face, solid.to_unit.transform_point3(near));
+    let local = LocalPoint {
+        position: point.position,
+        // Coordinates are at most 1, and so are the errors of the equations that define the surface.
+        error: DVec3::splat(gamma(8)),
+        normal_g: point.normal,
+        normal_s: point.normal,
+        uv: point.uv,
+        is_flat: solid.form.is_flat(),
+    };
+    local.leave(&solid.to_unit)
+}
