@@ -26,6 +26,7 @@ pub const DARK_PIXEL_FLOOR: f64 = 0.01;
 /// 2⁻²⁴. Ten times larger would let a vector pass that nobody normalised; ten times smaller would refuse turned lamps.
 /// Used by [`crate::light`].
 pub const UNIT_LENGTH: f64 = 1e-6;
+
 /// Bound on the relative error of `n` chained roundings in `f64`: n·u / (1 - n·u) with u = 2⁻⁵³.
 ///
 /// Source: `[Higham2002]`, Lemma 3.1. Used by the scene for the error that a surface point carries.
