@@ -4,8 +4,14 @@
 ///
 /// A cross product of unit vectors has rounding errors near 1e-16; at this sine its direction is still right to about
 /// eight digits. Ten times larger would refuse cameras that look almost straight down and are well defined; ten times
-/// smaller would give their horizon fewer digits. Used by [`crate::camera`].
+/// smaller would give their horizon fewer digits. Used by [`crate::camera`] and [`crate::turtle`].
 pub const PARALLEL_SINE: f64 = 1e-8;
+
+/// The angle, in radians, below which a tropism does not turn the turtle: GroIMP's own limit.
+///
+/// The axis of the turn is a cross product that vanishes with the angle. Ten times larger would change no model that can
+/// be told apart; ten times smaller would turn about axes that are rounding errors. Used by [`crate::turtle`].
+pub const TROPISM_ANGLE: f64 = 1e-10;
 
 /// How far reflectance + transmittance may exceed 1 before a material counts as making light. Dimensionless.
 ///

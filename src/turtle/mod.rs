@@ -4,12 +4,17 @@
 //! are right-handed about a local axis.
 
 pub mod effect;
+pub mod motion;
+pub mod state;
 pub mod table;
+mod tropism;
 
 use crate::graph::{NewField, TypeId, TypeTable};
 use std::sync::LazyLock;
 
 pub use effect::Effect;
+pub use motion::Action;
+pub use state::{Registers, TurtleState};
 pub use table::{BuiltinField, BuiltinType, FieldType, builtin_types};
 
 /// A table that holds the built-in types; modules of a model are added to it.
