@@ -1,5 +1,60 @@
-//! (to be written)
+//! Solving the light equation: the seam that all renderers share, and the driver that fills a film with them.
+//!
+//! An [`Integrator`] does its view-independent work once ([`prepare`](Integrator::prepare)) and hands out a
+//! [`RadianceEstimator`], which answers one question: how much light arrives along this ray? [`driver::render_view`] asks
+//! it for every sample of every pixel; it alone knows of tiles, threads, progress and cancellation.
+//!
+//! Every method is asked through the same ray queries of the [`scene`](crate::scene), the same sources ([`sources`]) and the
+//! same [`sampler`](crate::sampler), so that a fix is made once.
 
-pub mod cancel;
+mod context;
+pub mod driver;
+pub mod mis;
+pub mod path;
+pub mod sources;
 
-pub use cancel::CancelToken;
+pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
+pub use path::Path;
+
+use crate::color::Rgb;
+use crate::math::Ray;
+use crate::sampler::Sampler;
+use crate::scene::Scene;
+
+/// A method of light transport with its settings.
+pub trait Integrator {
+    /// Does the work that does not depend on the camera. A fly-through calls it once.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`] if the context was cancelled meanwhile; whatever else the method cannot do.
+    fn prepare<'s>(
+        &self,
+        scene: &'s Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError>;
+}
+
+/// A method made ready for one scene.
+pub trait RadianceEstimator: Sync {
+    /// Estimates the radiance arriving at the origin of `ray` from along it, W/(m² sr) per channel.
+    ///
+    /// A pure function of the ray and the sampler. `rays` counts the queries it took.
+    fn incident_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb;
+}
+
+/// The methods there are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Method {
+    /// Path tracing: unbiased, the reference for all others.
+    Path(Path),
+}
+
+impl Method {
+    /// The integrator of this method.
+    #[must_use]
+    pub fn integrator(&self) -> &dyn Integrator {
+        match self {
+            Self::Path(path) => path,
+        }
+    }
+}

@@ -24,23 +24,31 @@ pub enum SamplerKind {
 
 /// What a random choice on a path is for; each use has a pad of its own at every vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
 pub enum Use {
-    /// Position in the pixel (vertex 0), direction of scattering.
+    /// Position in the pixel (vertex 0), direction of scattering (all others).
     Direction,
-    /// Position on the lens (vertex 0), position on a light.
-    Light,
-    /// Which light (x), termination of the path (y).
+    /// Which light (x), whether the path goes on (y).
     Choice,
+    /// Position on the so-manieth light that is asked at this vertex.
+    Light(u16),
+    /// Whether light meets the so-manieth half-transparent surface on the way to this vertex.
+    Passage(u16),
 }
 
 impl Use {
-    /// Fixed uses per vertex; further pads of a vertex are the passages through half-transparent surfaces.
-    const COUNT: u32 = 3;
+    /// The pad within a vertex. The two counted uses take the even and the odd numbers from 2 on.
+    const fn pad(self) -> u32 {
+        match self {
+            Self::Direction => 0,
+            Self::Choice => 1,
+            Self::Light(nth) => 2 + 2 * nth as u32,
+            Self::Passage(nth) => 3 + 2 * nth as u32,
+        }
+    }
 }
 
-/// Pads per vertex: the fixed uses and room for the numbered ones.
-const PADS_PER_VERTEX: u32 = 1 << 16;
+/// Pads per vertex: two fixed uses and two counted ones of 65,536 each, rounded up.
+const PADS_PER_VERTEX: u64 = 1 << 18;
 
 /// The points of one sample.
 #[derive(Clone, Debug)]
@@ -49,7 +57,7 @@ pub struct Sampler {
     /// Chooses the scrambling: the same for all samples of one half of one pixel, and for nothing else.
     stream: u64,
     index: u32,
-    first_pad: u32,
+    first_pad: u64,
 }
 
 impl Sampler {
@@ -68,25 +76,18 @@ impl Sampler {
 
     /// Moves to the pads of path vertex `vertex` (0: the camera).
     pub const fn start_vertex(&mut self, vertex: u32) {
-        self.first_pad = vertex.wrapping_mul(PADS_PER_VERTEX);
+        self.first_pad = vertex as u64 * PADS_PER_VERTEX;
     }
 
-    /// The point in [0, 1)² for a use at this vertex.
+    /// The point in [0, 1)² for a use at this vertex. The same use at the same vertex gives the same point.
     #[must_use]
     pub fn point(&self, purpose: Use) -> DVec2 {
-        self.pad(self.first_pad.wrapping_add(purpose as u32))
-    }
-
-    /// The number in [0, 1) for the `nth` numbered choice at this vertex; numbers repeat after 65,533 of them.
-    #[must_use]
-    pub fn numbered(&self, nth: u32) -> f64 {
-        let pad = Use::COUNT + nth % (PADS_PER_VERTEX - Use::COUNT);
-        self.pad(self.first_pad.wrapping_add(pad)).x
+        self.pad(self.first_pad + u64::from(purpose.pad()))
     }
 
     /// The point of pad `pad`.
-    fn pad(&self, pad: u32) -> DVec2 {
-        let key = rng::hash(&[self.stream, u64::from(pad)]);
+    fn pad(&self, pad: u64) -> DVec2 {
+        let key = rng::hash(&[self.stream, pad]);
         let [x, y] = match self.kind {
             SamplerKind::OwenSobol => sobol::scrambled_pad(self.index, key),
             SamplerKind::Independent => split(rng::hash(&[key, u64::from(self.index)])),
@@ -126,7 +127,7 @@ mod tests {
             for vertex in [0, 1, 5] {
                 for log_n in [0_u32, 1, 4, 8] {
                     let n = 1 << log_n;
-                    let points = points(SamplerKind::OwenSobol, stream, vertex, Use::Light, n);
+                    let points = points(SamplerKind::OwenSobol, stream, vertex, Use::Light(0), n);
                     for log_columns in 0..=log_n {
                         let columns = f64::from(1_u32 << log_columns);
                         let rows = f64::from(1_u32 << (log_n - log_columns));
@@ -156,7 +157,7 @@ mod tests {
             let lists = [
                 xs(points(kind, 1, 1, Use::Direction, n)),
                 ys(points(kind, 1, 1, Use::Direction, n)),
-                xs(points(kind, 1, 1, Use::Light, n)),
+                xs(points(kind, 1, 1, Use::Light(0), n)),
                 xs(points(kind, 1, 1, Use::Choice, n)),
                 xs(points(kind, 1, 2, Use::Direction, n)),
                 xs(points(kind, 2, 1, Use::Direction, n)),
@@ -177,7 +178,7 @@ mod tests {
         let mut counts = [0_u32; 256];
         let n = 1_u32 << 16;
         for stream in 0..n {
-            let p = Sampler::new(SamplerKind::OwenSobol, u64::from(stream), 3).point(Use::Light);
+            let p = Sampler::new(SamplerKind::OwenSobol, u64::from(stream), 3).point(Use::Light(0));
             counts[(p.x * 16.0) as usize * 16 + (p.y * 16.0) as usize] += 1;
         }
         let expected = f64::from(n) / 256.0;
@@ -192,10 +193,13 @@ mod tests {
     }
 
     #[test]
-    fn numbered_choices_do_not_repeat_the_fixed_ones() {
-        let sampler = Sampler::new(SamplerKind::OwenSobol, 9, 0);
-        let fixed = [Use::Direction, Use::Light, Use::Choice].map(|u| sampler.point(u).x);
-        assert!(!fixed.contains(&sampler.numbered(0)));
-        assert_ne!(sampler.numbered(0), sampler.numbered(1));
+    fn no_two_uses_share_a_pad() {
+        let counted = (0..=u16::MAX).flat_map(|k| [Use::Light(k), Use::Passage(k)]);
+        let pads: BTreeSet<u32> = counted
+            .chain([Use::Direction, Use::Choice])
+            .map(Use::pad)
+            .collect();
+        assert_eq!(pads.len(), 2 + 2 * 65_536);
+        assert!(pads.iter().all(|pad| u64::from(*pad) < PADS_PER_VERTEX));
     }
 }

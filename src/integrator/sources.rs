@@ -1,0 +1,309 @@
+//! All light sources of a scene as one: choosing among them, sampling them, and the density with which that is done.
+
+use super::mis::power_heuristic;
+use super::path::Strategies;
+use super::RayCounts;
+use crate::color::Rgb;
+use crate::light::alias::AliasTable;
+use crate::light::{Dome, LightSample, SunDisk};
+use crate::material::{Scattering, ScatteringFrame};
+use crate::math::Ray;
+use crate::sampler::{Sampler, Use};
+use crate::scene::{EmitterId, Scene, SurfacePoint};
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// Up to this many sources are all sampled at the first vertex of a path; of more, only sky and sun are, and one other.
+const FEW: usize = 16;
+
+/// Share of the choices that goes by power over all sources; the rest is split evenly over the kinds of sources, so that
+/// a lamp in a dark corner is not forgotten because the sun is stronger.
+const SHARE_BY_POWER: f64 = 0.5;
+
+/// One source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    /// Index into the scene's lights.
+    Lamp(usize),
+    Sun,
+    Sky,
+    Emitter(EmitterId),
+}
+
+/// How far along a path light is sampled; noise of the first vertex is seen directly, so more is spent there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// At the surface that the camera sees.
+    First,
+    /// At all others.
+    Later,
+}
+
+/// A surface point that waits for light, and the direction it is seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct Shading<'a> {
+    /// The point.
+    pub point: &'a SurfacePoint,
+    /// Its normals.
+    pub frame: &'a ScatteringFrame,
+    /// What it does to light.
+    pub scattering: &'a Scattering,
+    /// Unit direction from the point to where it is seen from.
+    pub wo: DVec3,
+}
+
+/// The sources of a scene, ready for sampling.
+#[derive(Debug)]
+pub struct Sources<'s> {
+    scene: &'s Scene,
+    dome: Dome,
+    sun: Option<SunDisk>,
+    sources: Vec<Source>,
+    /// Where the emitters begin in `sources`; they are in the order of the scene.
+    first_emitter: usize,
+    first: Selection,
+    later: Selection,
+}
+
+/// Which sources are sampled: some always, and one of the others by chance.
+#[derive(Debug)]
+struct Selection {
+    always: Vec<usize>,
+    is_always: Vec<bool>,
+    others: AliasTable,
+}
+
+impl<'s> Sources<'s> {
+    /// Gathers the sources of `scene`.
+    #[must_use]
+    pub fn new(scene: &'s Scene) -> Self {
+        let environment = scene.environment();
+        let dome = Dome::new(environment);
+        let sun = environment.sun.clone().filter(|sun| !sun.irradiance.is_black());
+        let mut sources: Vec<Source> = (0..scene.lights().len()).map(Source::Lamp).collect();
+        sources.extend(sun.as_ref().map(|_| Source::Sun));
+        sources.extend((!dome.is_dark()).then_some(Source::Sky));
+        let first_emitter = sources.len();
+        let n_emitters = u32::try_from(scene.emitters().len()).unwrap_or(u32::MAX);
+        sources.extend((0..n_emitters).map(|id| Source::Emitter(EmitterId(id))));
+
+        let weights = weights(scene, &dome, sun.as_ref(), &sources);
+        let is_always = |index: usize| {
+            let is_everywhere = matches!(sources[index], Source::Sun | Source::Sky);
+            weights[index] > 0.0 && (is_everywhere || sources.len() <= FEW)
+        };
+        let first = Selection::new(&weights, is_always);
+        let later = Selection::new(&weights, |_| false);
+        Self { scene, dome, sun, sources, first_emitter, first, later }
+    }
+
+    fn selection(&self, reach: Reach) -> &Selection {
+        match reach {
+            Reach::First => &self.first,
+            Reach::Later => &self.later,
+        }
+    }
+
+    /// Estimates the radiance that leaves along `wo` after a single scattering of the light of all sources.
+    pub fn direct(
+        &self,
+        shading: &Shading<'_>,
+        reach: Reach,
+        strategies: Strategies,
+        sampler: &Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        let selection = self.selection(reach);
+        let mut radiance = Rgb::BLACK;
+        let always = selection.always.iter().map(|index| (*index, 1.0));
+        let chosen = selection.others.sample(sampler.point(Use::Choice).x);
+        let chosen = chosen.map(|index| (index, selection.others.probability(index)));
+        for (nth, (index, probability)) in (0_u16..).zip(always.chain(chosen)) {
+            let u = sampler.point(Use::Light(nth));
+            let Some((light, ray)) = self.sample(self.sources[index], shading.point, u) else {
+                continue;
+            };
+            let weight = weight(shading, &light, probability, strategies);
+            let scattered = shading.scattering.value_cos(shading.frame, shading.wo, light.wi);
+            let unshaded = scattered * light.facing_irradiance * (weight / probability);
+            if !unshaded.is_black() {
+                rays.shadow += 1;
+                radiance += unshaded * self.scene.transmittance(&ray);
+            }
+        }
+        radiance
+    }
+
+    /// Light of one source at a point, and the ray on which it may be blocked.
+    fn sample(&self, source: Source, point: &SurfacePoint, u: DVec2) -> Option<(LightSample, Ray)> {
+        let light = match source {
+            Source::Lamp(index) => self.scene.lights()[index].illuminate(point.position)?,
+            Source::Sun => self.sun.as_ref()?.sample(u),
+            Source::Sky => self.dome.sample(u)?,
+            Source::Emitter(id) => return self.sample_emitter(id, point, u),
+        };
+        Some((light, point.spawn_ray(light.wi).until(light.distance)))
+    }
+
+    fn sample_emitter(
+        &self,
+        id: EmitterId,
+        point: &SurfacePoint,
+        u: DVec2,
+    ) -> Option<(LightSample, Ray)> {
+        let emitter = &self.scene.emitters()[id.0 as usize];
+        let target = emitter.sample(u.to_array());
+        let to_light = target.position - point.position;
+        let distance = to_light.length();
+        let wi = to_light.try_normalize()?;
+        let cos = -wi.dot(target.normal);
+        let radiance = self.scene.material(emitter.material).emitted_radiance(cos > 0.0);
+        let pdf = solid_angle_density(target.pdf_area, distance, cos)?;
+        let light = LightSample {
+            wi,
+            distance,
+            facing_irradiance: radiance / pdf,
+            pdf_solid_angle: Some(pdf),
+        };
+        Some((light, point.spawn_ray_to(target.position)))
+    }
+
+    /// Radiance of the sky in a direction, without the disk of the sun.
+    #[must_use]
+    pub fn sky_radiance(&self, w: DVec3) -> Rgb {
+        self.dome.radiance(w)
+    }
+
+    /// Radiance of the disk of the sun in a direction; black beside it.
+    #[must_use]
+    pub fn sun_radiance(&self, w: DVec3) -> Rgb {
+        self.sun.as_ref().map_or(Rgb::BLACK, |sun| sun.radiance(w))
+    }
+
+    /// Density per steradian, choice of source included, with which sampling the sky finds `w`.
+    #[must_use]
+    pub fn sky_pdf_solid_angle(&self, w: DVec3, reach: Reach) -> f64 {
+        self.probability_of(Source::Sky, reach) * self.dome.pdf_solid_angle(w)
+    }
+
+    /// Density per steradian, choice of source included, with which sampling the sun finds `w`.
+    #[must_use]
+    pub fn sun_pdf_solid_angle(&self, w: DVec3, reach: Reach) -> f64 {
+        let pdf = self.sun.as_ref().map_or(0.0, |sun| sun.pdf_solid_angle(w));
+        self.probability_of(Source::Sun, reach) * pdf
+    }
+
+    /// Density per steradian, choice of source included, with which sampling lights from `origin` finds the point `at` of
+    /// a shining surface that a ray of this direction has hit; 0 if that surface is not sampled.
+    #[must_use]
+    pub fn emitter_pdf_solid_angle(
+        &self,
+        at: &SurfacePoint,
+        origin: DVec3,
+        direction: DVec3,
+        reach: Reach,
+    ) -> f64 {
+        let emitters = self.scene.emitters();
+        let found = emitters.binary_search_by_key(&at.primitive, |emitter| emitter.primitive);
+        let Ok(index) = found else { return 0.0 };
+        let pdf_area = emitters[index].pdf_area(at.normal_g);
+        let distance = (at.position - origin).length();
+        let cos = -direction.dot(at.normal_g);
+        let pdf = solid_angle_density(pdf_area, distance, cos).unwrap_or(0.0);
+        self.selection(reach).probability(self.first_emitter + index) * pdf
+    }
+
+    /// Probability that sky or sun is sampled.
+    fn probability_of(&self, source: Source, reach: Reach) -> f64 {
+        let infinite = &self.sources[..self.first_emitter];
+        let index = infinite.iter().rposition(|candidate| *candidate == source);
+        index.map_or(0.0, |index| self.selection(reach).probability(index))
+    }
+}
+
+impl Selection {
+    fn new(weights: &[f64], is_always: impl Fn(usize) -> bool) -> Self {
+        let is_always: Vec<bool> = (0..weights.len()).map(is_always).collect();
+        let rest = weights.iter().zip(&is_always).map(|(w, always)| if *always { 0.0 } else { *w });
+        // Weights are finite and not negative, which is all that can be wrong with them.
+        let others = AliasTable::new(&rest.collect::<Vec<_>>()).unwrap_or_default();
+        let always = (0..weights.len()).filter(|index| is_always[*index]).collect();
+        Self { always, is_always, others }
+    }
+
+    fn probability(&self, index: usize) -> f64 {
+        if self.is_always[index] { 1.0 } else { self.others.probability(index) }
+    }
+}
+
+/// Weight of a light sample against having found the same light by scattering.
+fn weight(
+    shading: &Shading<'_>,
+    light: &LightSample,
+    probability: f64,
+    strategies: Strategies,
+) -> f64 {
+    let Some(pdf) = light.pdf_solid_angle else { return 1.0 };
+    match strategies {
+        Strategies::LightsOnly => 1.0,
+        Strategies::ScatteringOnly => 0.0,
+        Strategies::Both => {
+            let scattering = shading.scattering;
+            let other = scattering.pdf_solid_angle(shading.frame, shading.wo, light.wi);
+            power_heuristic(probability * pdf, other)
+        }
+    }
+}
+
+/// Density per steradian of a point that was chosen with a density per area, seen from `distance` under the angle to its
+/// normal with cosine `cos`; `None` where it is no number (edge on, or at no distance).
+fn solid_angle_density(pdf_area: f64, distance: f64, cos: f64) -> Option<f64> {
+    let pdf = pdf_area * distance * distance / cos.abs();
+    (pdf > 0.0 && pdf.is_finite()).then_some(pdf)
+}
+
+/// How often each source is chosen, not normalised: by power, half over all and half within each kind.
+fn weights(scene: &Scene, dome: &Dome, sun: Option<&SunDisk>, sources: &[Source]) -> Vec<f64> {
+    // Light from far away passes through the scene's disk.
+    let bounds = scene.bounds();
+    let diagonal = if bounds.is_empty() { 0.0 } else { bounds.diagonal().length() };
+    let radius = if diagonal > 0.0 { 0.5 * diagonal } else { 1.0 };
+    let disk = PI * radius * radius;
+    let power = |source: &Source| {
+        let power = match *source {
+            Source::Lamp(index) => scene.lights()[index].power(radius),
+            Source::Sun => sun.map_or(Rgb::BLACK, |sun| sun.irradiance * disk),
+            Source::Sky => dome.horizontal_irradiance() * disk,
+            Source::Emitter(id) => {
+                let emitter = &scene.emitters()[id.0 as usize];
+                let material = scene.material(emitter.material);
+                let both = material.emitted_radiance(true) + material.emitted_radiance(false);
+                both * (PI * emitter.area())
+            }
+        };
+        power.sum()
+    };
+    let powers: Vec<f64> = sources.iter().map(power).collect();
+
+    let kind = |source: &Source| match source {
+        Source::Lamp(_) => 0,
+        Source::Sun => 1,
+        Source::Sky => 2,
+        Source::Emitter(_) => 3,
+    };
+    let mut of_kind = [0.0; 4];
+    for (source, power) in sources.iter().zip(&powers) {
+        of_kind[kind(source)] += power;
+    }
+    let total: f64 = of_kind.iter().sum();
+    let n_kinds = of_kind.iter().filter(|power| **power > 0.0).count() as f64;
+    let weight = |(source, power): (&Source, &f64)| {
+        if *power > 0.0 {
+            let even = power / (of_kind[kind(source)] * n_kinds);
+            SHARE_BY_POWER * power / total + (1.0 - SHARE_BY_POWER) * even
+        } else {
+            0.0
+        }
+    };
+    sources.iter().zip(&powers).map(weight).collect()
+}
