@@ -79,11 +79,17 @@ pub fn render_view(
         total: n_pixels * u64::from(settings.samples_per_pixel),
     };
     let film = Film::new(settings.width, settings.height);
-    let mut result = FilmResult { film, report: RenderReport::default() };
+    let mut result = FilmResult {
+        film,
+        report: RenderReport::default(),
+    };
 
     while result.report.samples_per_pixel < settings.samples_per_pixel {
         let start = result.report.samples_per_pixel;
-        let end = start + start.clamp(1, LONGEST_PASS).min(settings.samples_per_pixel - start);
+        let end = start
+            + start
+                .clamp(1, LONGEST_PASS)
+                .min(settings.samples_per_pixel - start);
         let rays = pass.run(result.film.tiles_mut(), start..end);
         result.report.rays += rays;
         result.report.n_rejected = result.film.n_rejected();
@@ -134,13 +140,18 @@ impl Pass<'_> {
             for sample in samples.clone() {
                 let mut sampler = self.sampler(x, y, sample);
                 let ray = self.camera.ray(self.film_point(x, y, &sampler));
-                let radiance = self.estimator.incident_radiance(&ray, &mut sampler, &mut rays);
+                let radiance = self
+                    .estimator
+                    .incident_radiance(&ray, &mut sampler, &mut rays);
                 pixel.add(sample, radiance);
             }
         }
         let n_samples = tile.pixels.len() as u64 * u64::from(samples.end - samples.start);
         let done = self.done.fetch_add(n_samples, Ordering::Relaxed) + n_samples;
-        (self.context.progress)(Progress { done, total: self.total });
+        (self.context.progress)(Progress {
+            done,
+            total: self.total,
+        });
         rays
     }
 
@@ -154,7 +165,10 @@ impl Pass<'_> {
     /// The point of the film, in the unit square from the upper left, where this sample of pixel (x, y) falls.
     fn film_point(&self, x: u32, y: u32, sampler: &Sampler) -> DVec2 {
         let offset = self.filter.offset(sampler.point(Use::Direction));
-        let size = DVec2::new(f64::from(self.settings.width), f64::from(self.settings.height));
+        let size = DVec2::new(
+            f64::from(self.settings.width),
+            f64::from(self.settings.height),
+        );
         (DVec2::new(f64::from(x), f64::from(y)) + offset) / size
     }
 }

@@ -30,7 +30,11 @@ pub struct Path {
 
 impl Default for Path {
     fn default() -> Self {
-        Self { max_depth: None, strategies: Strategies::Both, roulette_after: Some(4) }
+        Self {
+            max_depth: None,
+            strategies: Strategies::Both,
+            roulette_after: Some(4),
+        }
     }
 }
 
@@ -55,7 +59,11 @@ impl Integrator for Path {
         scene: &'s Scene,
         _context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
-        Ok(Box::new(PathEstimator { scene, sources: Sources::new(scene), settings: self.clone() }))
+        Ok(Box::new(PathEstimator {
+            scene,
+            sources: Sources::new(scene),
+            settings: self.clone(),
+        }))
     }
 }
 
@@ -96,23 +104,42 @@ impl RadianceEstimator for PathEstimator<'_> {
 
             // Add what the surface emits, weighted against having sampled it as a light from the last vertex.
             radiance += throughput * self.emitted_radiance(&point, material, &ray, last);
-            if self.settings.max_depth.is_some_and(|limit| n_scatterings >= limit) {
+            if self
+                .settings
+                .max_depth
+                .is_some_and(|limit| n_scatterings >= limit)
+            {
                 break;
             }
 
             // Add the light that arrives from sampled sources.
             let wo = -ray.direction;
-            let frame = ScatteringFrame { normal_g: point.normal_g, normal_s: point.normal_s };
-            let reach = if n_scatterings == 0 { Reach::First } else { Reach::Later };
+            let frame = ScatteringFrame {
+                normal_g: point.normal_g,
+                normal_s: point.normal_s,
+            };
+            let reach = if n_scatterings == 0 {
+                Reach::First
+            } else {
+                Reach::Later
+            };
             let choice = sampler.point(Use::Choice);
-            let shading = Shading { point: &point, frame: &frame, scattering: &material.scattering, wo };
+            let shading = Shading {
+                point: &point,
+                frame: &frame,
+                scattering: &material.scattering,
+                wo,
+            };
             let direct =
-                self.sources.direct(&shading, reach, self.settings.strategies, sampler, rays);
+                self.sources
+                    .direct(&shading, reach, self.settings.strategies, sampler, rays);
             radiance += throughput * direct;
 
             // Scatter.
             let u = sampler.point(Use::Direction);
-            let Some(scattered) = material.scattering.sample(&frame, wo, u) else { break };
+            let Some(scattered) = material.scattering.sample(&frame, wo, u) else {
+                break;
+            };
             throughput *= scattered.weight;
             if throughput.is_black() {
                 break;
@@ -120,7 +147,11 @@ impl RadianceEstimator for PathEstimator<'_> {
 
             // Go on with a probability that falls with the throughput, so that long dim paths stay affordable and the
             // estimate stays unbiased.
-            if self.settings.roulette_after.is_some_and(|after| n_scatterings >= after) {
+            if self
+                .settings
+                .roulette_after
+                .is_some_and(|after| n_scatterings >= after)
+            {
                 let survival = throughput.max_channel().min(HIGHEST_SURVIVAL);
                 if choice.y >= survival {
                     break;
@@ -152,9 +183,7 @@ impl PathEstimator<'_> {
             let point = self.scene.surface(ray, &hit);
             let alpha = self.scene.material(point.material).alpha;
             // At the last number the surface counts as met: 65,535 layers of glass are opaque.
-            if alpha >= 1.0
-                || sampler.point(Use::Passage(passage)).x < alpha
-                || passage == u16::MAX
+            if alpha >= 1.0 || sampler.point(Use::Passage(passage)).x < alpha || passage == u16::MAX
             {
                 return Some(point);
             }
@@ -192,7 +221,8 @@ impl PathEstimator<'_> {
             return Rgb::BLACK;
         }
         let weight = self.hit_weight(last, |last| {
-            self.sources.emitter_pdf_solid_angle(point, last.position, ray.direction, last.reach)
+            self.sources
+                .emitter_pdf_solid_angle(point, last.position, ray.direction, last.reach)
         });
         emission * weight
     }

@@ -1,8 +1,8 @@
 //! All light sources of a scene as one: choosing among them, sampling them, and the density with which that is done.
 
+use super::RayCounts;
 use super::mis::power_heuristic;
 use super::path::Strategies;
-use super::RayCounts;
 use crate::color::Rgb;
 use crate::light::alias::AliasTable;
 use crate::light::{Dome, LightSample, SunDisk};
@@ -79,7 +79,10 @@ impl<'s> Sources<'s> {
     pub fn new(scene: &'s Scene) -> Self {
         let environment = scene.environment();
         let dome = Dome::new(environment);
-        let sun = environment.sun.clone().filter(|sun| !sun.irradiance.is_black());
+        let sun = environment
+            .sun
+            .clone()
+            .filter(|sun| !sun.irradiance.is_black());
         let mut sources: Vec<Source> = (0..scene.lights().len()).map(Source::Lamp).collect();
         sources.extend(sun.as_ref().map(|_| Source::Sun));
         sources.extend((!dome.is_dark()).then_some(Source::Sky));
@@ -94,7 +97,15 @@ impl<'s> Sources<'s> {
         };
         let first = Selection::new(&weights, is_always);
         let later = Selection::new(&weights, |_| false);
-        Self { scene, dome, sun, sources, first_emitter, first, later }
+        Self {
+            scene,
+            dome,
+            sun,
+            sources,
+            first_emitter,
+            first,
+            later,
+        }
     }
 
     fn selection(&self, reach: Reach) -> &Selection {
@@ -124,7 +135,9 @@ impl<'s> Sources<'s> {
                 continue;
             };
             let weight = weight(shading, &light, probability, strategies);
-            let scattered = shading.scattering.value_cos(shading.frame, shading.wo, light.wi);
+            let scattered = shading
+                .scattering
+                .value_cos(shading.frame, shading.wo, light.wi);
             let unshaded = scattered * light.facing_irradiance * (weight / probability);
             if !unshaded.is_black() {
                 rays.shadow += 1;
@@ -157,7 +170,10 @@ impl<'s> Sources<'s> {
         let distance = to_light.length();
         let wi = to_light.try_normalize()?;
         let cos = -wi.dot(target.normal);
-        let radiance = self.scene.material(emitter.material).emitted_radiance(cos > 0.0);
+        let radiance = self
+            .scene
+            .material(emitter.material)
+            .emitted_radiance(cos > 0.0);
         let pdf = solid_angle_density(target.pdf_area, distance, cos)?;
         let light = LightSample {
             wi,
@@ -210,7 +226,9 @@ impl<'s> Sources<'s> {
         let distance = (at.position - origin).length();
         let cos = -direction.dot(at.normal_g);
         let pdf = solid_angle_density(pdf_area, distance, cos).unwrap_or(0.0);
-        self.selection(reach).probability(self.first_emitter + index) * pdf
+        self.selection(reach)
+            .probability(self.first_emitter + index)
+            * pdf
     }
 
     /// Probability that sky or sun is sampled.
@@ -224,15 +242,28 @@ impl<'s> Sources<'s> {
 impl Selection {
     fn new(weights: &[f64], is_always: impl Fn(usize) -> bool) -> Self {
         let is_always: Vec<bool> = (0..weights.len()).map(is_always).collect();
-        let rest = weights.iter().zip(&is_always).map(|(w, always)| if *always { 0.0 } else { *w });
+        let rest = weights
+            .iter()
+            .zip(&is_always)
+            .map(|(w, always)| if *always { 0.0 } else { *w });
         // Weights are finite and not negative, which is all that can be wrong with them.
         let others = AliasTable::new(&rest.collect::<Vec<_>>()).unwrap_or_default();
-        let always = (0..weights.len()).filter(|index| is_always[*index]).collect();
-        Self { always, is_always, others }
+        let always = (0..weights.len())
+            .filter(|index| is_always[*index])
+            .collect();
+        Self {
+            always,
+            is_always,
+            others,
+        }
     }
 
     fn probability(&self, index: usize) -> f64 {
-        if self.is_always[index] { 1.0 } else { self.others.probability(index) }
+        if self.is_always[index] {
+            1.0
+        } else {
+            self.others.probability(index)
+        }
     }
 }
 
@@ -243,7 +274,9 @@ fn weight(
     probability: f64,
     strategies: Strategies,
 ) -> f64 {
-    let Some(pdf) = light.pdf_solid_angle else { return 1.0 };
+    let Some(pdf) = light.pdf_solid_angle else {
+        return 1.0;
+    };
     match strategies {
         Strategies::LightsOnly => 1.0,
         Strategies::ScatteringOnly => 0.0,
@@ -266,7 +299,11 @@ fn solid_angle_density(pdf_area: f64, distance: f64, cos: f64) -> Option<f64> {
 fn weights(scene: &Scene, dome: &Dome, sun: Option<&SunDisk>, sources: &[Source]) -> Vec<f64> {
     // Light from far away passes through the scene's disk.
     let bounds = scene.bounds();
-    let diagonal = if bounds.is_empty() { 0.0 } else { bounds.diagonal().length() };
+    let diagonal = if bounds.is_empty() {
+        0.0
+    } else {
+        bounds.diagonal().length()
+    };
     let radius = if diagonal > 0.0 { 0.5 * diagonal } else { 1.0 };
     let disk = PI * radius * radius;
     let power = |source: &Source| {
