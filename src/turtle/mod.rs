@@ -5,6 +5,8 @@
 
 pub mod effect;
 pub mod motion;
+pub mod pose;
+pub mod reading;
 pub mod state;
 pub mod table;
 mod tropism;
@@ -14,6 +16,7 @@ use std::sync::LazyLock;
 
 pub use effect::Effect;
 pub use motion::Action;
+pub use pose::Poses;
 pub use state::{Registers, TurtleState};
 pub use table::{BuiltinField, BuiltinType, FieldType, builtin_types};
 
