@@ -5,7 +5,7 @@
 //! whose depth is logarithmic: neither its building nor its traversal can degrade to the quadratic behaviour that
 //! agglomerative builders show for coincident boxes.
 //!
-//! Source: `[Wald2007]`.
+//! Source: [Wald2007](crate::references#wald2007).
 
 use super::node::{Bvh, Child, Node, WIDTH};
 use rayon::prelude::*;

@@ -6,7 +6,7 @@
 /// The root where -b and the square root would cancel is found from the product of the roots instead, so its sign follows
 /// the sign of `c` reliably: a start outside a convex body stays outside.
 ///
-/// Source: `[Haines2019]`.
+/// Source: [Haines2019](crate::references#haines2019).
 #[inline]
 #[must_use]
 pub fn roots(a: f64, b: f64, c: f64, discriminant: f64) -> [f64; 2] {

@@ -4,7 +4,7 @@
 //! two-dimensional question, whose edge functions are, bit for bit, each other's negatives for the two neighbours of an
 //! edge. Nothing may be contracted to fused multiply-adds here (Rust never does so by itself).
 //!
-//! Source: `[Woop2013]`.
+//! Source: [Woop2013](crate::references#woop2013).
 
 use super::interval::{Interval, Line};
 use glam::DVec3;

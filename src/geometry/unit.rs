@@ -200,7 +200,7 @@ fn intersect_sphere(line: &Line, interval: Interval) -> Option<f64> {
     let a = d.length_squared();
     let b = o.dot(d);
     let c = o.length_squared() - 1.0;
-    // The distance from the centre to the line has no cancellation even if the start is far away ([Haines2019], eq. 5).
+    // The distance from the centre to the line has no cancellation even if the start is far away (Haines2019).
     let miss = (o - d * (b / a)).length_squared();
     roots(a, b, c, a * (1.0 - miss))
         .into_iter()

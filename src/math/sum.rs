@@ -2,7 +2,7 @@
 
 /// A running sum whose error does not grow with the number of terms: Neumaier's variant of Kahan's summation.
 ///
-/// Source: `[Neumaier1974]`.
+/// Source: [Neumaier1974](crate::references#neumaier1974).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sum {
     sum: f64,

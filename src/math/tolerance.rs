@@ -35,7 +35,7 @@ pub const UNIT_LENGTH: f64 = 1e-6;
 
 /// Bound on the relative error of `n` chained roundings in `f64`: n·u / (1 - n·u) with u = 2⁻⁵³.
 ///
-/// Source: `[Higham2002]`, Lemma 3.1. Used by the scene for the error that a surface point carries.
+/// Source: [Higham2002, lemma 3.1](crate::references#higham2002). Used by the scene for the error that a surface point carries.
 #[must_use]
 pub const fn gamma(n: u32) -> f64 {
     let nu = n as f64 * (f64::EPSILON / 2.0);
@@ -44,7 +44,7 @@ pub const fn gamma(n: u32) -> f64 {
 
 /// Relative widening of the far end of a box interval in `f32`: 1 + 2γ₃ with γ₃ the bound of three roundings.
 ///
-/// Source: `[Ize2013]`. Used by [`crate::accel`]. Smaller lets rays slip between touching boxes; ten times larger only
+/// Source: [Ize2013](crate::references#ize2013). Used by [`crate::accel`]. Smaller lets rays slip between touching boxes; ten times larger only
 /// opens a few boxes in vain.
 pub const BOX_SLACK: f32 = 1.0 + 6.0 * f32::EPSILON;
 
