@@ -149,7 +149,8 @@ fn bounces_inside_and_outside_convex_bodies_never_meet_their_own_surface() {
         base_cap: true,
         top_cap: true,
     };
-    let shapes: [(&str, fn(f64) -> Shape); 3] = [
+    type OfSize = fn(f64) -> Shape;
+    let shapes: [(&str, OfSize); 3] = [
         ("sphere", |radius| Shape::Sphere { radius }),
         ("box", |s| Shape::Box {
             half_x: s,

@@ -166,16 +166,18 @@ fn grow(entries: &mut [Entry], whole: Set, leaf_size: usize) -> Tree {
     Tree { children }
 }
 
-/// The set with the largest area that is too large for a leaf.
+/// The set with the largest area, and among equals the largest number, that is too large for a leaf.
 fn largest_splittable(sets: &[Set], leaf_size: usize) -> Option<usize> {
+    let by_size = |a: &usize, b: &usize| {
+        let (a, b) = (&sets[*a], &sets[*b]);
+        a.bounds
+            .half_area()
+            .total_cmp(&b.bounds.half_area())
+            .then(a.count.cmp(&b.count))
+    };
     (0..sets.len())
         .filter(|index| sets[*index].count > leaf_size)
-        .max_by(|a, b| {
-            sets[*a]
-                .bounds
-                .half_area()
-                .total_cmp(&sets[*b].bounds.half_area())
-        })
+        .max_by(by_size)
 }
 
 /// Splits a set of at least two entries into two that are not empty.

@@ -177,7 +177,7 @@ impl UnitFrustum {
 
         roots(a, b, c, discriminant).into_iter().find_map(|root| {
             let z = o.z + root * d.z;
-            let on_side = z >= -RIM_OVERLAP && z <= 1.0 + RIM_OVERLAP;
+            let on_side = (-RIM_OVERLAP..=1.0 + RIM_OVERLAP).contains(&z);
             let t = shift + root;
             (on_side && interval.contains(t)).then_some(t)
         })
@@ -377,7 +377,7 @@ mod tests {
                 let (t, face) = shape.intersect(&line, ALL).unwrap();
                 let point = shape.point(face, line.at(t));
                 let origin = point.position + point.normal * 1e-14;
-                for other in lines(1.0).iter().step_by(97) {
+                for other in lines(1.0).iter().step_by(397) {
                     let side = other.direction.dot(point.normal);
                     let grazing = other.direction - point.normal * side * (1.0 - 1e-9);
                     for direction in [other.direction * side.signum(), grazing * side.signum()] {
@@ -388,7 +388,7 @@ mod tests {
                 }
             }
         }
-        assert!(tested > 1_000_000);
+        assert!(tested > 400_000);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use understory::scene::description::{
 };
 use understory::scene::{Scene, SceneError};
 
-/// A stream of pseudo-random numbers (SplitMix64), the same in every run.
+/// A stream of pseudo-random numbers (`SplitMix64`), the same in every run.
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
@@ -186,7 +186,7 @@ pub(crate) fn try_build(shapes: Vec<PlacedShape>) -> Result<Scene, SceneError> {
 }
 
 pub(crate) fn build(shapes: Vec<PlacedShape>) -> Scene {
-    try_build(shapes).unwrap()
+    try_build(shapes).expect("the shapes are valid")
 }
 
 /// Whether the long versions of tests are wanted: `UNDERSTORY_FULL=1 cargo test --release`.
