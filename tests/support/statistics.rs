@@ -21,7 +21,12 @@ pub enum Verdict {
 
 /// Compares a mean of independent observations with the truth; `comparisons` is how many the whole test makes.
 pub fn verdict(observed: &RunningStats, truth: f64, comparisons: u32) -> Verdict {
-    judge(observed.mean() - truth, observed.standard_error(), truth, comparisons)
+    judge(
+        observed.mean() - truth,
+        observed.standard_error(),
+        truth,
+        comparisons,
+    )
 }
 
 fn judge(difference: f64, error: f64, scale: f64, comparisons: u32) -> Verdict {
@@ -45,11 +50,22 @@ pub fn assert_mean(name: &str, observed: &RunningStats, truth: f64, comparisons:
         observed.standard_error(),
         observed.n()
     );
-    assert_eq!(verdict(observed, truth, comparisons), Verdict::Agrees, "{detail}");
+    assert_eq!(
+        verdict(observed, truth, comparisons),
+        Verdict::Agrees,
+        "{detail}"
+    );
     for fault in [1.0 - PLANTED_FAULT, 1.0 + PLANTED_FAULT] {
-        let (difference, error) = (observed.mean() * fault - truth, observed.standard_error() * fault);
+        let (difference, error) = (
+            observed.mean() * fault - truth,
+            observed.standard_error() * fault,
+        );
         let seen = judge(difference, error, truth, comparisons);
-        assert_eq!(seen, Verdict::Differs, "a planted fault of 2 % stays unseen: {detail}");
+        assert_eq!(
+            seen,
+            Verdict::Differs,
+            "a planted fault of 2 % stays unseen: {detail}"
+        );
     }
 }
 
@@ -59,6 +75,15 @@ pub fn assert_same(name: &str, a: &RunningStats, b: &RunningStats, comparisons: 
     let detail = format!("{name}: {} and {} ± {error}", a.mean(), b.mean());
     let found = judge(a.mean() - b.mean(), error, a.mean(), comparisons);
     assert_eq!(found, Verdict::Agrees, "{detail}");
-    let planted = judge(a.mean() * (1.0 + PLANTED_FAULT) - b.mean(), error, a.mean(), comparisons);
-    assert_eq!(planted, Verdict::Differs, "a planted fault of 2 % stays unseen: {detail}");
+    let planted = judge(
+        a.mean() * (1.0 + PLANTED_FAULT) - b.mean(),
+        error,
+        a.mean(),
+        comparisons,
+    );
+    assert_eq!(
+        planted,
+        Verdict::Differs,
+        "a planted fault of 2 % stays unseen: {detail}"
+    );
 }
