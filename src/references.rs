@@ -1,42 +1,115 @@
 //! The papers, books and standards that the code cites, one heading each. Documentation only.
 //!
+//! # BirdRiordan1986
+//! R. Bird, C. Riordan: Simple Solar Spectral Model for Direct and Diffuse Irradiance on Horizontal and Tilted Planes at the
+//! Earth's Surface for Cloudless Atmospheres. Journal of Climate and Applied Meteorology 25, 1986; also report SERI/TR-215-2436.
+//! <https://doi.org/10.2172/5986936>
+//!
+//! # Burley2020
+//! B. Burley: Practical Hash-based Owen Scrambling. Journal of Computer Graphics Techniques 9(4), 2020.
+//! <https://jcgt.org/published/0009/04/01/>
+//!
+//! # Chan1983
+//! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
+//! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
+//!
 //! # Duff2017
 //! T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani, R. Villemin: Building an Orthonormal Basis, Revisited.
 //! Journal of Computer Graphics Techniques 6(1), 2017. <https://jcgt.org/published/0006/01/01/>
 //!
-//! # Heitz2019
-//! E. Heitz: A Low-Distortion Map Between Triangle and Square. 2019. <https://hal.science/hal-02073696>
-//!
-//! # Shirley1997
-//! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.
-//! <https://doi.org/10.1080/10867651.1997.10487479>
+//! # Ernst2006
+//! M. Ernst, M. Stamminger, G. Greiner: Filter Importance Sampling. IEEE Symposium on Interactive Ray Tracing, 2006.
+//! <https://doi.org/10.1109/RT.2006.280223>
 //!
 //! # FNV
 //! G. Fowler, L. C. Noll, K.-P. Vo: FNV hash. <http://www.isthe.com/chongo/tech/comp/fnv/>
-//!
-//! # PNG3
-//! W3C: Portable Network Graphics (PNG) Specification (Third Edition), 2025. <https://www.w3.org/TR/png-3/>
 //!
 //! # Haines2019
 //! E. Haines, J. Günther, T. Akenine-Möller: Precision Improvements for Ray/Sphere Intersection. Ray Tracing Gems, chapter 7,
 //! Apress, 2019. <https://doi.org/10.1007/978-1-4842-4427-2_7>
 //!
+//! # Harris1978
+//! F. Harris: On the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform. Proceedings of the IEEE
+//! 66(1), 1978. <https://doi.org/10.1109/PROC.1978.10837>
+//!
+//! # Heitz2019
+//! E. Heitz: A Low-Distortion Map Between Triangle and Square. 2019. <https://hal.science/hal-02073696>
+//!
 //! # Higham2002
 //! N. J. Higham: Accuracy and Stability of Numerical Algorithms, second edition. SIAM, 2002.
 //! <https://doi.org/10.1137/1.9780898718027>
+//!
+//! # HosekWilkie2012
+//! L. Hosek, A. Wilkie: An Analytic Model for Full Spectral Sky-Dome Radiance. ACM Transactions on Graphics 31(4), 2012.
+//! <https://doi.org/10.1145/2185520.2185591>
 //!
 //! # Ize2013
 //! T. Ize: Robust BVH Ray Traversal. Journal of Computer Graphics Techniques 2(2), 2013.
 //! <https://jcgt.org/published/0002/02/02/>
 //!
+//! # Kajiya1986
+//! J. Kajiya: The Rendering Equation. SIGGRAPH, 1986. <https://doi.org/10.1145/15922.15902>
+//!
+//! # KastenYoung1989
+//! F. Kasten, A. Young: Revised Optical Air Mass Tables and Approximation Formula. Applied Optics 28(22), 1989.
+//! <https://doi.org/10.1364/AO.28.004735>
+//!
+//! # KhronosNeutral
+//! Khronos Group: Khronos PBR Neutral Tone Mapper, 2024. <https://github.com/KhronosGroup/ToneMapping>
+//!
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik
 //! und Mechanik 54(1), 1974. <https://doi.org/10.1002/zamm.19740540106>
+//!
+//! # NumericalRecipes
+//! W. Press, S. Teukolsky, W. Vetterling, B. Flannery: Numerical Recipes, third edition. Cambridge University Press, 2007.
+//!
+//! # PNG3
+//! W3C: Portable Network Graphics (PNG) Specification (Third Edition), 2025. <https://www.w3.org/TR/png-3/>
+//!
+//! # Preetham1999
+//! A. Preetham, P. Shirley, B. Smits: A Practical Analytic Model for Daylight. SIGGRAPH, 1999.
+//! <https://doi.org/10.1145/311535.311545>
+//!
+//! # Reinhard2002
+//! E. Reinhard, M. Stark, P. Shirley, J. Ferwerda: Photographic Tone Reproduction for Digital Images. ACM Transactions on
+//! Graphics 21(3), 2002. <https://doi.org/10.1145/566654.566575>
+//!
+//! # Shirley1997
+//! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.
+//! <https://doi.org/10.1080/10867651.1997.10487479>
+//!
+//! # Stafford2011
+//! D. Stafford: Better Bit Mixing, 2011. <https://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html>
+//!
+//! # VeachGuibas1995
+//! E. Veach, L. Guibas: Optimally Combining Sampling Techniques for Monte Carlo Rendering. SIGGRAPH, 1995.
+//! <https://doi.org/10.1145/218380.218498>
+//!
+//! # Vegdahl2021
+//! N. Vegdahl: Building a Better LK Hash, 2021. <https://psychopath.io/post/2021_01_30_building_a_better_lk_hash>
+//!
+//! # Vose1991
+//! M. Vose: A Linear Algorithm for Generating Random Numbers with a Given Distribution. IEEE Transactions on Software
+//! Engineering 17(9), 1991. <https://doi.org/10.1109/32.92917>
 //!
 //! # Wald2007
 //! I. Wald: On fast Construction of SAH-based Bounding Volume Hierarchies. IEEE Symposium on Interactive Ray Tracing, 2007.
 //! <https://doi.org/10.1109/RT.2007.4342588>
 //!
+//! # Welford1962
+//! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.
+//! <https://doi.org/10.1080/00401706.1962.10490022>
+//!
 //! # Woop2013
 //! S. Woop, C. Benthin, I. Wald: Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1), 2013.
 //! <https://jcgt.org/published/0002/01/05/>
+//!
+//! # Wyman2013
+//! C. Wyman, P.-P. Sloan, P. Shirley: Simple Analytic Approximations to the CIE XYZ Color Matching Functions. Journal of
+//! Computer Graphics Techniques 2(2), 2013. <https://jcgt.org/published/0002/02/01/>
+
+#![expect(
+    clippy::doc_markdown,
+    reason = "headings are keys and names are names, not code"
+)]

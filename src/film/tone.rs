@@ -12,7 +12,7 @@ pub enum ToneCurve {
     /// Exact up to a knee, then a shoulder that reaches white only in the limit.
     ///
     /// The largest channel is compressed and the others follow in proportion, so hues stay; what is far too bright fades to
-    /// white, as it does on film. Follows the idea of [KhronosNeutral](crate::references#khronosneutral), with a lower
+    /// white, as it does on film. Follows the idea of [`KhronosNeutral`](crate::references#khronosneutral), with a lower
     /// knee for the range of sunlit leaves and without its black offset.
     #[default]
     Shoulder,

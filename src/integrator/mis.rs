@@ -1,6 +1,6 @@
 //! Combining two ways of finding the same light.
 //!
-//! Source: [VeachGuibas1995](crate::references#veachguibas1995). With one sample of each strategy the weights of both sum
+//! Source: [`VeachGuibas1995`](crate::references#veachguibas1995). With one sample of each strategy the weights of both sum
 //! to 1 for every direction, so the combination is unbiased whatever the heuristic.
 
 /// Weight of a sample found with density `own`, when the other strategy would have found it with density `other` (the

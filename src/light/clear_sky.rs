@@ -9,7 +9,7 @@ use hw_skymodel::rgb::{SkyParams, SkyState};
 
 /// Coefficients of one sky: a formula per channel.
 ///
-/// Source: [HosekWilkie2012, eq. 8 and 11](crate::references#hosekwilkie2012); the coefficients of their fitted data come from the crate
+/// Source: [`HosekWilkie2012`](crate::references#hosekwilkie2012); the coefficients of their fitted data come from the crate
 /// `hw-skymodel`, the formula is evaluated here in `f64` with the same bits on every machine.
 #[derive(Clone, Debug)]
 pub(super) struct ClearSky {

@@ -1,7 +1,7 @@
 //! How bright the disk of the sun is through a clear atmosphere.
 //!
 //! The solar spectrum outside the atmosphere and the transmittance of air, haze, ozone, water vapour and oxygen at 36
-//! wavelengths ([BirdRiordan1986](crate::references#birdriordan1986)), weighted with the CIE 1931 colour-matching functions.
+//! wavelengths ([`BirdRiordan1986`](crate::references#birdriordan1986)), weighted with the CIE 1931 colour-matching functions.
 //! Haze follows the turbidity that also shapes the sky, so sun and sky belong together.
 //!
 //! One channel's W/m² is the spectral irradiance integrated with the sRGB matching functions, the same convention as the
@@ -52,7 +52,7 @@ const fn band(wavelength: f64, outside: f64, ozone: f64, water: f64, gas: f64) -
     }
 }
 
-/// [BirdRiordan1986](crate::references#birdriordan1986), table 1, 360 to 780 nm.
+/// [`BirdRiordan1986`](crate::references#birdriordan1986), table 1, 360 to 780 nm.
 const BANDS: [Band; 36] = [
     band(360.0, 0.9759, 0.0, 0.0, 0.0),
     band(370.0, 1.1199, 0.0, 0.0, 0.0),
@@ -180,18 +180,18 @@ fn direct_irradiance(elevation: Angle, turbidity: f64) -> Rgb {
     linear_srgb(xyz).map(|c| c.max(0.0))
 }
 
-/// Air mass relative to the zenith, [KastenYoung1989, eq. 3](crate::references#kastenyoung1989).
+/// Air mass relative to the zenith, [`KastenYoung1989`](crate::references#kastenyoung1989).
 fn air_mass(elevation: Angle) -> f64 {
     let degrees = elevation.degrees();
     1.0 / (elevation.sin() + 0.505_72 * pow(degrees + 6.079_95, -1.6364))
 }
 
-/// Ångström's turbidity coefficient β of a turbidity, [Preetham1999, appendix A.2](crate::references#preetham1999).
+/// Ångström's turbidity coefficient β of a turbidity, [Preetham1999, appendix](crate::references#preetham1999).
 fn haze(turbidity: f64) -> f64 {
     (0.046_083_658_2 * turbidity - 0.045_860_259_3).max(0.0)
 }
 
-/// What the atmosphere lets through at one wavelength: [BirdRiordan1986](crate::references#birdriordan1986), equations
+/// What the atmosphere lets through at one wavelength: [`BirdRiordan1986`](crate::references#birdriordan1986), equations
 /// for Rayleigh scattering, water vapour, ozone and mixed gases; haze by Ångström's formula with β = `haze`.
 fn transmittance(band: &Band, mass: f64, haze: f64) -> f64 {
     let micrometres = band.wavelength / 1000.0;

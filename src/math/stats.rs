@@ -1,6 +1,7 @@
 //! Means with their uncertainty, and how far a mean may lie from the truth by chance.
 
-use libm::{erfc, exp, lgamma, log, sqrt};
+use super::functions::{exp, ln};
+use libm::{erfc, lgamma};
 
 /// Running mean and variance of a stream of numbers (Welford), mergeable.
 ///
@@ -106,14 +107,14 @@ pub fn family_z(alpha: f64, comparisons: u32) -> f64 {
 
 /// Probability that a χ² variable with `degrees` of freedom exceeds `x`: the regularised upper incomplete gamma function.
 ///
-/// Series below the mean, continued fraction above ([NumericalRecipes, §6.2](crate::references#numericalrecipes)).
+/// Series below the mean, continued fraction above ([`NumericalRecipes`, §6.2](crate::references#numericalrecipes)).
 #[must_use]
 pub fn chi_squared_upper_tail(x: f64, degrees: f64) -> f64 {
     let (a, x) = (0.5 * degrees, 0.5 * x);
     if x <= 0.0 {
         return 1.0;
     }
-    let scale = exp(a * log(x) - x - lgamma(a));
+    let scale = exp(a * ln(x) - x - lgamma(a));
     if x < a + 1.0 {
         // Series of the lower function.
         let (mut term, mut sum, mut k) = (1.0 / a, 1.0 / a, a);
@@ -147,7 +148,7 @@ pub fn chi_squared_upper_tail(x: f64, degrees: f64) -> f64 {
 /// Square root of the sum of two squared standard errors: the error of a difference of independent means.
 #[must_use]
 pub fn combined_error(a: f64, b: f64) -> f64 {
-    sqrt(a * a + b * b)
+    (a * a + b * b).sqrt()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::math::rng;
 /// Both coordinates, as 32-bit fractions, of point `index` of the pad that `key` scrambles.
 ///
 /// The index is shuffled too, so that pads of the same index are independent of one another.
-/// Source: [Burley2020, listings 2 to 4](crate::references#burley2020).
+/// Source: [Burley2020](crate::references#burley2020).
 pub(super) fn scrambled_pad(index: u32, key: u64) -> [u32; 2] {
     let [shuffle, scramble_x] = super::split(key);
     let [scramble_y, _] = super::split(rng::mix(key));
