@@ -3,22 +3,21 @@
 //! Means are judged as `support/statistics.rs` says: false-alarm probability 1e-6 per test, never blind, and every
 //! comparison is made twice more with a planted fault of 2 %, which must be seen.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 #[path = "support/statistics.rs"]
 mod statistics;
+#[path = "support/room.rs"]
+mod room;
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
+use room::{Room, at, gray, shaded_ground, square};
 use statistics::{Verdict, assert_mean, assert_same, verdict};
 use std::f64::consts::{FRAC_1_PI, PI};
-use std::ops::ControlFlow;
-use understory::camera::{Camera, View};
 use understory::color::Rgb;
-use understory::film::Filter;
 use understory::geometry::Shape;
-use understory::integrator::driver::{FilmResult, FilmSettings, render_view};
 use understory::integrator::path::Strategies;
-use understory::integrator::{
-    CancelToken, Integrator, Path, RayCounts, RenderContext, RenderError,
-};
+use understory::integrator::{CancelToken, Integrator, Path, RayCounts, RenderContext};
 use understory::light::{Dome, Environment, Light, Sky};
 use understory::material::Material;
 use understory::math::angle::Angle;
@@ -29,61 +28,6 @@ use understory::scene::Scene;
 use understory::scene::description::{
     Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
-
-/// A scene under construction.
-#[derive(Default)]
-struct Room {
-    description: SceneDescription,
-    group: Group,
-}
-
-impl Room {
-    fn with(mut self, shape: Shape, to_world: DAffine3, material: Material) -> Self {
-        let number = u32::try_from(self.description.materials.len()).unwrap();
-        self.description.materials.push(material);
-        self.group.shapes.push(PlacedShape {
-            shape,
-            to_group: to_world,
-            material: MaterialId(number),
-            organ: OrganId(0),
-        });
-        self
-    }
-
-    fn lit_by(mut self, light: Light) -> Self {
-        self.description.lights.push(light);
-        self
-    }
-
-    fn under(mut self, environment: Environment) -> Self {
-        self.description.environment = environment;
-        self
-    }
-
-    fn build(mut self) -> Scene {
-        self.description.groups.push(self.group);
-        self.description.root = Some(GroupId(0));
-        Scene::build(self.description).unwrap()
-    }
-}
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
-
-/// A horizontal square round the origin that looks up.
-fn square(half: f64) -> Shape {
-    let edge = 2.0 * half;
-    Shape::Parallelogram {
-        corner: DVec3::new(-half, -half, 0.0),
-        edge_u: DVec3::X * edge,
-        edge_v: DVec3::Y * edge,
-    }
-}
-
-fn gray(value: f64) -> Rgb {
-    Rgb::splat(value)
-}
 
 fn uniform_sky(radiance: f64) -> Environment {
     Environment {
@@ -125,11 +69,11 @@ fn observation<'a>(
     }
 }
 
-/// Observations until their mean is known to 0.2 %, at least a thousand.
+/// Observations until their mean is known to 0.16 %, at least a thousand.
 fn observe(scene: &Scene, path: &Path, ray: impl Fn(u64) -> Ray) -> RunningStats {
     let observation = observation(scene, path, ray);
     let mut seen = RunningStats::default();
-    while seen.n() < 1000 || (seen.standard_error() > 0.002 * seen.mean() && seen.n() < 100_000) {
+    while seen.n() < 1000 || (seen.standard_error() > 0.0016 * seen.mean() && seen.n() < 100_000) {
         seen.push(observation(seen.n()));
     }
     seen
@@ -212,7 +156,7 @@ fn depth_counts_scattering_events() {
     for (rho, depths) in [(0.5, 0..=5), (1.0, 3..=3)] {
         let scenes = furnaces(rho);
         for depth in depths {
-            let series: f64 = (0..=depth).map(|k| f64::from(rho).powi(k)).sum();
+            let series: f64 = (0..=depth).map(|k| f64::powi(rho, k)).sum();
             let limit = path(Some(u32::try_from(depth).unwrap()));
             for (name, scene) in &scenes {
                 let seen = observe(scene, &limit, all_round);
@@ -432,27 +376,6 @@ fn open_ground_receives_the_stated_daylight() {
     }
 }
 
-/// A sphere lamp and a bright sky over ground with a ball that shades it, without the sun (which no scattered ray finds).
-fn shaded_ground() -> Scene {
-    let day = Environment::daylight(Angle::deg(0.0), Angle::deg(30.0), 4.0, gray(0.3));
-    let lamp = Material::lambert(gray(0.2)).emitting(gray(80.0), Rgb::BLACK);
-    Room::default()
-        .with(Shape::Plane, at(0., 0., 0.), Material::lambert(gray(0.5)))
-        .with(
-            Shape::Sphere { radius: 0.6 },
-            at(0.0, 0.0, 0.6),
-            Material::lambert(gray(0.7)),
-        )
-        .with(Shape::Sphere { radius: 0.4 }, at(1.4, 0.0, 1.0), lamp)
-        .with(
-            square(0.5),
-            at(-1.0, 0.3, 0.4),
-            Material::leaf(gray(0.3), gray(0.4)),
-        )
-        .under(Environment { sun: None, ..day })
-        .build()
-}
-
 #[test]
 fn all_strategies_have_the_same_mean() {
     let scene = shaded_ground();
@@ -495,122 +418,6 @@ fn nothing_gives_no_light_and_no_nan() {
         .lit_by(Light::point(DVec3::Z, gray(1e-30)))
         .build();
     assert!(look(&huge, down).is_finite());
-}
-
-// ── the driver ──
-
-fn picture(
-    threads: usize,
-    seed: u64,
-    samples: u32,
-    on_pass: &mut (dyn FnMut(&FilmResult) -> ControlFlow<()> + Send),
-) -> Result<FilmResult, RenderError> {
-    let scene = shaded_ground();
-    let view = View {
-        eye: DVec3::new(0.0, -6.0, 2.0),
-        target: DVec3::new(0.0, 0.0, 0.5),
-        up: DVec3::Z,
-        fov: Angle::deg(40.0),
-    };
-    let camera = Camera::perspective(&view, 1.5).unwrap();
-    let cancel = CancelToken::default();
-    let context = RenderContext {
-        seed,
-        cancel: &cancel,
-        progress: &|_| {},
-    };
-    let settings = FilmSettings {
-        width: 51,
-        height: 34,
-        samples_per_pixel: samples,
-        filter: Filter::Box,
-        sampler: SamplerKind::OwenSobol,
-    };
-    let estimator = Path::default().prepare(&scene, &context).unwrap();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
-    pool.install(|| {
-        let mut stop_token = |result: &FilmResult| {
-            let answer = on_pass(result);
-            if seed == STOPPED_SEED {
-                cancel.cancel();
-            }
-            answer
-        };
-        render_view(&*estimator, &camera, &settings, &context, &mut stop_token)
-    })
-}
-
-/// With this seed `picture` is cancelled after its first pass.
-const STOPPED_SEED: u64 = 999;
-
-#[test]
-fn bytes_do_not_depend_on_threads_or_passes() {
-    let mut go_on = |_: &FilmResult| ControlFlow::Continue(());
-    let one = picture(1, 3, 7, &mut go_on).unwrap();
-    for threads in [2, 3] {
-        assert_eq!(picture(threads, 3, 7, &mut go_on).unwrap(), one);
-    }
-    assert_ne!(picture(2, 4, 7, &mut go_on).unwrap().film, one.film);
-
-    // Stopped after four samples, or never meant to have more: the same picture.
-    let mut stop = |result: &FilmResult| {
-        if result.report.samples_per_pixel >= 4 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    };
-    let stopped = picture(2, 3, 7, &mut stop).unwrap();
-    assert_eq!(stopped, picture(1, 3, 4, &mut go_on).unwrap());
-    assert_eq!(stopped.film.n_samples(), 51 * 34 * 4);
-}
-
-#[test]
-fn cancelling_keeps_what_is_finished() {
-    let mut passes = 0;
-    let result = picture(2, STOPPED_SEED, 64, &mut |_| {
-        passes += 1;
-        ControlFlow::Continue(())
-    });
-    let Err(RenderError::Cancelled {
-        partial: Some(partial),
-    }) = result
-    else {
-        panic!("expected a cancelled render with a picture")
-    };
-    assert_eq!(passes, 1);
-    assert!(partial.film.n_samples() >= 51 * 34);
-}
-
-#[test]
-fn the_reported_error_is_the_error() {
-    let mut go_on = |_: &FilmResult| ControlFlow::Continue(());
-    let reference = picture(2, 5, 512, &mut go_on).unwrap().film.image();
-    let rough = picture(2, 6, 16, &mut go_on).unwrap();
-    let image = rough.film.image();
-    let mean =
-        reference.pixels.iter().map(|p| p.luminance()).sum::<f64>() / image.pixels.len() as f64;
-    let squared: f64 = image
-        .pixels
-        .iter()
-        .zip(&reference.pixels)
-        .map(|(a, b)| {
-            let (a, b) = (a.luminance(), b.luminance());
-            (a - b).powi(2) / (b * b + 0.01 * mean * mean)
-        })
-        .sum();
-    let truth = (squared / image.pixels.len() as f64).sqrt();
-    let estimate = rough.report.error.unwrap();
-    let ratio = estimate.relative / truth;
-    assert!(
-        (0.8..1.25).contains(&ratio),
-        "estimated {estimate:?}, true {truth}"
-    );
-    assert_eq!(rough.report.n_rejected, 0);
-    assert!(rough.report.rays.total() > rough.film.n_samples());
 }
 
 #[test]

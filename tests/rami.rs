@@ -3,7 +3,13 @@
 //!
 //! The reference is Eradiate's (see the head of `tests/refdata/rami3_het01_brfpp_eradiate.csv`), itself validated against
 //! the RAMI consensus. The usual run takes 13 of the 76 angles. `UNDERSTORY_FULL=1 cargo test --release --test rami --
-//! --nocapture` takes all of them with 16 times the samples, and prints every angle.
+//! --nocapture` takes all of them with eight times the samples, and prints every angle.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may panic and print"
+)]
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use rayon::prelude::*;
@@ -36,7 +42,7 @@ const BLOCKS: u64 = 64;
 
 /// Relative standard error of the reference: the scatter of its neighbouring angles about a smooth curve, away from the
 /// hot spot (root mean square third difference / √20). Its own variance column is smaller than that scatter.
-const REFERENCE_ERROR: f64 = 0.0015;
+const REFERENCE_ERROR: f64 = 0.0007;
 
 /// Rows of a table in `tests/refdata`, without comments and header.
 fn table(name: &str) -> Vec<Vec<f64>> {
@@ -148,7 +154,7 @@ fn brf(estimator: &dyn RadianceEstimator, vza: f64, samples_per_block: u32) -> R
 #[test]
 fn het01_principal_plane() {
     let is_full = std::env::var("UNDERSTORY_FULL").is_ok_and(|value| value == "1");
-    let (step, samples_per_block) = if is_full { (1, 16_384) } else { (6, 1024) };
+    let (step, samples_per_block) = if is_full { (1, 4096) } else { (6, 512) };
     let scene = canopy();
     let cancel = CancelToken::default();
     let context = RenderContext {

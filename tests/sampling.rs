@@ -1,6 +1,8 @@
 //! Every sampler against the density it claims: χ² of many samples over cells whose probabilities are integrated
 //! numerically, and the density's integral.
 
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use understory::color::Rgb;

@@ -4,14 +4,14 @@ use understory::math::stats::{RunningStats, combined_error, family_z};
 
 /// Probability that a correct program fails any comparison of one test. Seeds are fixed, so red means a bug or a changed
 /// random stream, not bad luck.
-pub const FALSE_ALARM: f64 = 1e-6;
+pub(crate) const FALSE_ALARM: f64 = 1e-6;
 
 /// The fault that every comparison must be able to see, as a fraction.
-pub const PLANTED_FAULT: f64 = 0.02;
+pub(crate) const PLANTED_FAULT: f64 = 0.02;
 
 /// What a comparison found.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     Agrees,
     /// The means differ by more than chance allows.
     Differs,
@@ -20,7 +20,7 @@ pub enum Verdict {
 }
 
 /// Compares a mean of independent observations with the truth; `comparisons` is how many the whole test makes.
-pub fn verdict(observed: &RunningStats, truth: f64, comparisons: u32) -> Verdict {
+pub(crate) fn verdict(observed: &RunningStats, truth: f64, comparisons: u32) -> Verdict {
     judge(
         observed.mean() - truth,
         observed.standard_error(),
@@ -43,7 +43,7 @@ fn judge(difference: f64, error: f64, scale: f64, comparisons: u32) -> Verdict {
 }
 
 /// Fails unless the observations agree with the truth *and* would not if they were 2 % higher or lower.
-pub fn assert_mean(name: &str, observed: &RunningStats, truth: f64, comparisons: u32) {
+pub(crate) fn assert_mean(name: &str, observed: &RunningStats, truth: f64, comparisons: u32) {
     let detail = format!(
         "{name}: {} ± {} of {} observations, expected {truth}",
         observed.mean(),
@@ -70,7 +70,7 @@ pub fn assert_mean(name: &str, observed: &RunningStats, truth: f64, comparisons:
 }
 
 /// Fails unless two estimates of the same thing agree (Welch) and would not if one were 2 % off.
-pub fn assert_same(name: &str, a: &RunningStats, b: &RunningStats, comparisons: u32) {
+pub(crate) fn assert_same(name: &str, a: &RunningStats, b: &RunningStats, comparisons: u32) {
     let error = combined_error(a.standard_error(), b.standard_error());
     let detail = format!("{name}: {} and {} ± {error}", a.mean(), b.mean());
     let found = judge(a.mean() - b.mean(), error, a.mean(), comparisons);
