@@ -1,2 +1,132 @@
-//! (to be written)
+//! From the syntax tree to the checked [`model`]: every name resolved, every expression typed, every slot numbered.
+//!
+//! [`check`] goes over the files twice: first all declarations ([`declare`]: modules, fields, methods, variables of all
+//! files, so that their order does not matter), then all bodies. Everything that is wrong is collected, each fault once: an
+//! expression that could not be typed is `None` from then on and what uses it is passed over.
+//!
+//! What the language has and this program has not is refused by name (`refuse`), never skipped silently.
+
+mod aggregate;
+mod arithmetic;
+mod assign;
+mod body;
+mod call;
+mod coerce;
+mod constant;
+mod context;
+mod declare;
+mod expr;
+mod member;
+mod messages;
 pub mod model;
+mod module;
+mod names;
+mod overload;
+mod pattern;
+mod production;
+mod purity;
+mod refuse;
+mod rule;
+mod setter;
+mod statics;
+mod stmt;
+mod switch;
+mod types;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::graph::{TypeId, TypeTable};
+use crate::syntax::ast;
+use crate::turtle;
+use context::{Body, Context, Facts};
+use declare::{FieldInfo, FileInfo, MethodInfo, ModuleInfo, StaticInfo};
+use model::{Constant, MethodId, Model, StaticId};
+
+/// One file of a model.
+#[derive(Clone, Debug)]
+pub struct SourceModel {
+    /// Its name, with or without folder and `.rgg`; other files refer to it by what is left without them.
+    pub name: String,
+    /// What stands in it.
+    pub ast: ast::File,
+}
+
+/// Checks the files of one model together.
+///
+/// The model can be run only if there is no error among the diagnostics. Cost: linear in the size of the files.
+pub fn check(files: &[SourceModel]) -> (Model, Diagnostics) {
+    let mut checker = Checker::new(files);
+    checker.declare();
+    let model = checker.bodies();
+    (model, checker.diagnostics)
+}
+
+/// The state of a check: what is declared, and the body at hand.
+struct Checker<'a> {
+    files: Vec<FileInfo<'a>>,
+    types: TypeTable,
+    /// The type that all nodes extend.
+    node: TypeId,
+    /// Number of built-in types; they come first in the table.
+    n_builtin: usize,
+    /// Fields by type and number.
+    fields: Vec<Vec<FieldInfo>>,
+    /// Modules in order of their types.
+    modules: Vec<ModuleInfo<'a>>,
+    module_names: HashMap<String, TypeId>,
+    methods: Vec<MethodInfo<'a>>,
+    method_names: HashMap<String, Vec<MethodId>>,
+    /// Methods of each module.
+    methods_of: HashMap<TypeId, Vec<MethodId>>,
+    statics: Vec<StaticInfo<'a>>,
+    static_names: HashMap<String, Vec<StaticId>>,
+    /// Values of the variables that are constants.
+    static_values: HashMap<StaticId, Constant>,
+    /// Variables assigned somewhere besides their initializer.
+    assigned: BTreeSet<StaticId>,
+    /// Names of types that were refused where they are declared; their uses are passed over.
+    refused: HashSet<String>,
+    /// What each body does.
+    facts: BTreeMap<Body, Facts>,
+    /// Whether any element of an array is ever assigned.
+    writes_elements: bool,
+    cx: Context,
+    diagnostics: Diagnostics,
+}
+
+impl<'a> Checker<'a> {
+    fn new(files: &'a [SourceModel]) -> Self {
+        let types = turtle::types();
+        let node = types.find("Node").unwrap_or(TypeId(0));
+        Self {
+            files: files.iter().map(FileInfo::new).collect(),
+            n_builtin: types.len(),
+            fields: declare::builtin_fields(&types, node),
+            types,
+            node,
+            modules: vec![],
+            module_names: HashMap::new(),
+            methods: vec![],
+            method_names: HashMap::new(),
+            methods_of: HashMap::new(),
+            statics: vec![],
+            static_names: HashMap::new(),
+            static_values: HashMap::new(),
+            assigned: BTreeSet::new(),
+            refused: HashSet::new(),
+            facts: BTreeMap::new(),
+            writes_elements: false,
+            cx: Context::default(),
+            diagnostics: Diagnostics::default(),
+        }
+    }
+
+    /// Notes a fault.
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+}

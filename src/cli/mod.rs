@@ -1,4 +1,3 @@
 //! The program as people meet it: commands, messages, exit codes.
 
 pub mod args;
-pub mod terminal;

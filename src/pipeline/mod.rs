@@ -3,8 +3,6 @@
 //! read → check → derive → describe → build → prepare → view → write. Each stage is keyed by what it depends on (texts,
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed.
 
-pub mod audience;
-pub mod budget;
 pub mod content_hash;
 pub mod exposing;
 pub mod failure;
@@ -12,6 +10,5 @@ pub mod report;
 pub mod sources;
 pub mod store;
 pub mod surroundings;
-pub mod viewing;
 pub mod viewpoint;
 pub mod world;

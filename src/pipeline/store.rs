@@ -5,7 +5,6 @@ use super::failure::Failure;
 use super::world::{Entry, World, folder_of};
 use crate::image::format::MAGIC_LENGTH;
 use crate::image::{Format, Picture, encode};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// A picture file to be.
@@ -64,14 +63,15 @@ impl PictureTarget {
     }
 }
 
-/// A JSON file to be.
+/// A JSON file to be, known by keys that all of its kind have.
 #[derive(Clone, Debug)]
 pub struct JsonTarget {
     path: PathBuf,
+    keys: &'static [&'static str],
 }
 
 impl JsonTarget {
-    /// A JSON object at `path`; an earlier one of its kind is known by its having `keys`.
+    /// A JSON object with (at least) `keys` at `path`.
     ///
     /// # Errors
     /// If the suffix is not `.json`, files cannot be made there, or something else is there already.
@@ -93,6 +93,7 @@ impl JsonTarget {
         })?;
         Ok(Self {
             path: path.to_owned(),
+            keys,
         })
     }
 
@@ -100,10 +101,9 @@ impl JsonTarget {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write(&self, world: &dyn World, object: &impl Serialize) -> Result<(), Failure> {
-        let text = serde_json::to_string_pretty(object)
-            .map_err(|error| Failure::World(format!("cannot encode as JSON: {error}")))?;
-        put(world, &self.path, format!("{text}\n").as_bytes())
+    pub fn write(&self, world: &dyn World, object: &serde_json::Value) -> Result<(), Failure> {
+        debug_assert!(self.keys.iter().all(|key| object.get(key).is_some()));
+        put(world, &self.path, format!("{object:#}\n").as_bytes())
     }
 }
 

@@ -1,0 +1,527 @@
+//! Calls: of methods of the model, of getters and setters, of the library.
+
+use super::Checker;
+use super::context::{Body, Layer};
+use super::model::{Expr, ExprKind, MethodId, Place, Slot, Type};
+use super::overload::{Overload, Wanted};
+use super::setter::Accessor;
+use crate::diag::{Diagnostic, Span};
+use crate::graph::TypeId;
+use crate::library::{self, ClassId, ConstructorId, FunctionId};
+use crate::syntax::ast;
+
+/// What can be called.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Callee {
+    /// A method of the model.
+    Method(MethodId),
+    /// A getter or setter of a node.
+    Accessor(Accessor),
+    /// A method of a library object.
+    Library(library::MethodId),
+    /// A function of the library.
+    Function(FunctionId),
+}
+
+/// Overloads that are looked at together, and the object they are called on.
+struct Group {
+    receiver: Option<Expr>,
+    overloads: Vec<Overload<Callee>>,
+}
+
+impl Checker<'_> {
+    /// `f(args)`, `x.f(args)`.
+    pub(super) fn call(
+        &mut self,
+        callee: &ast::Expr,
+        args: &[ast::Expr],
+        span: Span,
+    ) -> Option<Expr> {
+        match &callee.kind {
+            ast::ExprKind::Name(name) => {
+                let is_own = self.method_names.contains_key(name);
+                if !is_own && let Some(aggregate) = self.aggregate_call(name, args, span) {
+                    return aggregate;
+                }
+                let args = self.exprs(args)?;
+                self.call_name(name, callee.span, args, span)
+            }
+            ast::ExprKind::Member(object, member) => self.call_member(object, member, args, span),
+            ast::ExprKind::Super | ast::ExprKind::This => {
+                let fault = Diagnostic::error(
+                    "constructor-call",
+                    span,
+                    "constructors cannot be called like this",
+                );
+                self.report(fault.hint("give arguments to the parent with `extends Parent(args)`"));
+                None
+            }
+            ast::ExprKind::Broken => None,
+            _ => {
+                self.report(Diagnostic::error(
+                    "not-callable",
+                    callee.span,
+                    "this cannot be called",
+                ));
+                None
+            }
+        }
+    }
+
+    /// `f(args)`: looked for from the inside out.
+    fn call_name(
+        &mut self,
+        name: &str,
+        name_span: Span,
+        args: Vec<Expr>,
+        span: Span,
+    ) -> Option<Expr> {
+        let mut groups = self.groups(name, span);
+        groups.retain(|group| !group.overloads.is_empty());
+        let Some(first) = groups
+            .iter()
+            .position(|g| self.any_takes(&g.overloads, &args))
+            .or((!groups.is_empty()).then_some(0))
+        else {
+            let fault = self.unknown_function(name, name_span)?;
+            self.report(fault);
+            return None;
+        };
+        let Group {
+            receiver,
+            overloads,
+        } = groups.swap_remove(first);
+        let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.apply(callee, receiver, args, true, span)
+    }
+
+    /// What `name` could call, innermost first.
+    fn groups(&self, name: &str, span: Span) -> Vec<Group> {
+        let mut groups = vec![];
+        let in_slot = |slot: Slot, ty: &Type| Expr {
+            kind: ExprKind::Read(Place::Local(slot)),
+            ty: ty.clone(),
+            span,
+        };
+        for layer in self.cx.layers.iter().rev() {
+            if let Layer::With(slot, ty) = layer {
+                let overloads = self.object_overloads(ty, name);
+                groups.push(Group {
+                    receiver: Some(in_slot(*slot, ty)),
+                    overloads,
+                });
+            }
+        }
+        if let Some(this) = self.cx.this {
+            let ty = Type::Node(this);
+            let overloads = self.object_overloads(&ty, name);
+            groups.push(Group {
+                receiver: Some(in_slot(Slot(0), &ty)),
+                overloads,
+            });
+        }
+        let of_files = self.method_names.get(name).map_or(&[][..], Vec::as_slice);
+        let of_files = of_files
+            .iter()
+            .copied()
+            .filter(|m| self.methods[m.0 as usize].owner.is_none());
+        let (here, elsewhere): (Vec<_>, Vec<_>) =
+            of_files.partition(|m| self.methods[m.0 as usize].file == self.cx.file);
+        for methods in [here, elsewhere] {
+            let overloads = methods
+                .into_iter()
+                .map(|m| self.method_overload(m))
+                .collect();
+            groups.push(Group {
+                receiver: None,
+                overloads,
+            });
+        }
+        let imports = self
+            .files
+            .get(self.cx.file)
+            .map_or(&[][..], |f| &f.static_imports);
+        for owner in std::iter::once("").chain(imports.iter().copied()) {
+            groups.push(Group {
+                receiver: None,
+                overloads: self.function_overloads(owner, name),
+            });
+        }
+        groups
+    }
+
+    fn function_overloads(&self, owner: &str, name: &str) -> Vec<Overload<Callee>> {
+        let owner = if owner == "Library" { "" } else { owner };
+        let all = library::functions_named(owner, name).iter();
+        all.map(|&id| Overload::of_signature(Callee::Function(id), id.signature(), self))
+            .collect()
+    }
+
+    fn method_overload(&self, id: MethodId) -> Overload<Callee> {
+        let method = &self.methods[id.0 as usize];
+        let wanted = |ty: &Option<Type>| ty.clone().map_or(Wanted::Unknown, Wanted::Value);
+        let params = method.params.iter().map(wanted).collect();
+        Overload {
+            id: Callee::Method(id),
+            params,
+            is_varargs: method.is_varargs,
+        }
+    }
+
+    /// All that `object.name(…)` could mean, for an object of type `ty`.
+    pub(super) fn object_overloads(&self, ty: &Type, name: &str) -> Vec<Overload<Callee>> {
+        let mut found = vec![];
+        let mut owners: Vec<&'static str> = vec![];
+        match ty {
+            Type::Node(id) => {
+                let lineage: Vec<TypeId> =
+                    std::iter::successors(Some(*id), |t| self.types[*t].parent).collect();
+                let own = self.method_names.get(name).map_or(&[][..], Vec::as_slice);
+                for ancestor in lineage {
+                    let of = own
+                        .iter()
+                        .filter(|m| self.methods[m.0 as usize].owner == Some(ancestor));
+                    found.extend(of.map(|m| self.method_overload(*m)));
+                }
+                found.extend(self.accessor_overloads(*id, name));
+            }
+            Type::Class(class) => owners.extend(class.lineage().map(ClassId::name)),
+            Type::String => owners.push("String"),
+            Type::Object | Type::Array(_) => {}
+            _ => return found,
+        }
+        owners.push("Object");
+        for owner in owners {
+            let all = library::methods_named(owner, name)
+                .iter()
+                .filter(|m| !m.is_hidden());
+            found.extend(
+                all.map(|&id| Overload::of_signature(Callee::Library(id), id.signature(), self)),
+            );
+        }
+        found
+    }
+
+    /// `x.f(args)`.
+    fn call_member(
+        &mut self,
+        object: &ast::Expr,
+        member: &ast::Ident,
+        args: &[ast::Expr],
+        span: Span,
+    ) -> Option<Expr> {
+        let name = member.name.as_str();
+        if let Some(owner) = self.qualifier(object) {
+            let args = self.exprs(args)?;
+            return self.call_static(&owner, object.span, member, args, span);
+        }
+        let is_super = matches!(object.kind, ast::ExprKind::Super);
+        let (object, args) = if is_super {
+            let this = self.this_type(object.span)?;
+            let parent = self.types[this].parent.unwrap_or(self.node);
+            let kind = ExprKind::Read(Place::Local(Slot(0)));
+            (
+                Some(Expr {
+                    kind,
+                    ty: Type::Node(parent),
+                    span: object.span,
+                }),
+                self.exprs(args),
+            )
+        } else {
+            (self.value(object), self.exprs(args))
+        };
+        let (object, args) = (object?, args?);
+        let overloads = self.object_overloads(&object.ty, name);
+        if overloads.is_empty() {
+            self.report_unknown_method(&object.ty, member);
+            return None;
+        }
+        let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.apply(callee, Some(object), args, !is_super, span)
+    }
+
+    fn report_unknown_method(&mut self, ty: &Type, member: &ast::Ident) {
+        if let Type::Node(id) = ty
+            && self.is_orphan(*id)
+        {
+            return;
+        }
+        let name = member.name.as_str();
+        let message = format!("`{}` has no method `{name}`", self.type_name(ty));
+        let fault =
+            Diagnostic::error("unknown-method", member.span, message).label("no such method");
+        let lineage: Vec<&str> = match ty {
+            Type::Class(class) => class.lineage().map(ClassId::name).collect(),
+            Type::String => vec!["String"],
+            _ => vec![],
+        };
+        let of_library = library::MethodId::ALL
+            .iter()
+            .filter(|m| !m.is_hidden())
+            .map(|m| m.signature());
+        let mut known: Vec<String> = of_library
+            .filter(|row| lineage.contains(&row.owner))
+            .map(|row| row.name.into())
+            .collect();
+        if let Type::Node(id) = ty {
+            let is_own = |m: &&super::declare::MethodInfo<'_>| {
+                m.owner.is_some_and(|o| self.types.is_a(*id, o))
+            };
+            known.extend(self.methods.iter().filter(is_own).map(|m| m.name.into()));
+            let visible = self.types[*id]
+                .fields
+                .iter()
+                .map(|f| &*f.name)
+                .filter(|n| !n.contains('.'));
+            let prefix = if name.starts_with("set") {
+                "set"
+            } else {
+                "get"
+            };
+            let accessor = |field: &str| {
+                let mut letters = field.chars();
+                let first = letters
+                    .next()
+                    .map(|c| c.to_uppercase().to_string())
+                    .unwrap_or_default();
+                format!("{prefix}{first}{}", letters.as_str())
+            };
+            known.extend(visible.map(accessor));
+        }
+        let fault = self.did_you_mean(fault, name, known.iter().map(String::as_str));
+        self.report(fault);
+    }
+
+    /// `Math.f(args)`, `parameters.f(args)`, `Module.f(args)`.
+    fn call_static(
+        &mut self,
+        owner: &str,
+        owner_span: Span,
+        member: &ast::Ident,
+        args: Vec<Expr>,
+        span: Span,
+    ) -> Option<Expr> {
+        let name = member.name.as_str();
+        let mut overloads = self.function_overloads(owner, name);
+        let (file, ty) = (self.file_named(owner), self.named_type(owner));
+        for &id in self.method_names.get(name).map_or(&[][..], Vec::as_slice) {
+            let method = &self.methods[id.0 as usize];
+            let is_member = match (method.owner, &ty) {
+                (None, _) => file == Some(method.file),
+                (Some(module), Some(Type::Node(ty))) => {
+                    method.is_static && self.types.is_a(*ty, module)
+                }
+                _ => false,
+            };
+            if is_member {
+                overloads.push(self.method_overload(id));
+            }
+        }
+        if overloads.is_empty() {
+            if self.refused.contains(owner) {
+                return None;
+            }
+            let fault = if self.is_known_qualifier(owner) {
+                let fault = Diagnostic::error(
+                    "unknown-function",
+                    member.span,
+                    format!("`{owner}` has no function `{name}`"),
+                );
+                let known = FunctionId::ALL
+                    .iter()
+                    .map(|f| f.signature())
+                    .filter(|row| row.owner == owner);
+                self.did_you_mean(fault, name, known.map(|row| row.name))
+            } else if let Some(hint) = super::refuse::type_hint(owner) {
+                Diagnostic::error(
+                    "unsupported-type",
+                    owner_span,
+                    format!("`{owner}` is not supported"),
+                )
+                .hint(hint)
+            } else {
+                let fault = Diagnostic::error(
+                    "unknown-name",
+                    owner_span,
+                    format!("unknown variable `{owner}`"),
+                );
+                let locals = self.cx.local_names();
+                let known = locals
+                    .iter()
+                    .map(String::as_str)
+                    .chain(self.files.iter().map(|f| f.name.as_str()));
+                self.did_you_mean(
+                    fault.label("no such variable, file or class"),
+                    owner,
+                    known.chain(["Math", "System"]),
+                )
+            };
+            self.report(fault);
+            return None;
+        }
+        let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.apply(callee, None, args, true, span)
+    }
+
+    /// A call with converted arguments.
+    fn apply(
+        &mut self,
+        callee: Callee,
+        receiver: Option<Expr>,
+        args: Vec<Expr>,
+        is_virtual: bool,
+        span: Span,
+    ) -> Option<Expr> {
+        match callee {
+            Callee::Accessor(accessor) => self.apply_accessor(receiver?, accessor, args, span),
+            Callee::Function(id) => {
+                self.note_effect(id.signature().effect);
+                let ty = id.signature().result.to_type(self.node);
+                Some(Expr {
+                    kind: ExprKind::Library(id, args),
+                    ty,
+                    span,
+                })
+            }
+            Callee::Library(id) => {
+                let (receiver, row) = (receiver?, id.signature());
+                self.note_method_effect(&receiver, row.effect);
+                let ty = row.result.to_type(self.node);
+                Some(Expr {
+                    kind: ExprKind::LibraryMethod(id, Box::new(receiver), args),
+                    ty,
+                    span,
+                })
+            }
+            Callee::Method(id) => {
+                let method = &self.methods[id.0 as usize];
+                let (result, is_static) = (method.result.clone(), method.is_static);
+                let is_abstract = self.is_abstract(id);
+                self.cx.facts.runs.push(Body::Method(id));
+                if !is_virtual && is_abstract {
+                    let message = format!(
+                        "`{}` is abstract in the parent",
+                        self.methods[id.0 as usize].name
+                    );
+                    self.report(Diagnostic::error("abstract-method", span, message));
+                    return None;
+                }
+                let receiver = if is_static {
+                    None
+                } else {
+                    receiver.map(Box::new)
+                };
+                let kind = ExprKind::Call {
+                    method: id,
+                    receiver,
+                    args,
+                    is_virtual: is_virtual && !is_static,
+                };
+                Some(Expr {
+                    kind,
+                    ty: result?,
+                    span,
+                })
+            }
+        }
+    }
+
+    /// The fault of a call of something unknown; `None` if it was refused before.
+    fn unknown_function(&self, name: &str, span: Span) -> Option<Diagnostic> {
+        if self.refused.contains(name) || self.cx.this.is_some_and(|this| self.is_orphan(this)) {
+            return None;
+        }
+        if name == "apply" {
+            let fault = Diagnostic::error(
+                "bad-apply",
+                span,
+                "`apply(n)` can stand only in the head of a `for`",
+            );
+            return Some(fault.hint("write `for (apply(n)) …`"));
+        }
+        if let Some(hint) = super::refuse::function_hint(name) {
+            let message = format!("`{name}` is not supported");
+            return Some(Diagnostic::error("unsupported-function", span, message).hint(hint));
+        }
+        let fault = Diagnostic::error(
+            "unknown-function",
+            span,
+            format!("unknown function `{name}`"),
+        );
+        if self.node_type(name).is_some() {
+            return Some(
+                fault
+                    .label("this is a module")
+                    .hint(format!("write `new {name}(…)` outside of rules")),
+            );
+        }
+        if !library::functions_named("Math", name).is_empty() {
+            return Some(fault.hint(format!(
+                "write `Math.{name}(…)`, or begin the file with `import static java.lang.Math.*;`"
+            )));
+        }
+        let functions = FunctionId::ALL
+            .iter()
+            .map(|f| f.signature())
+            .filter(|row| row.owner.is_empty());
+        let known = self
+            .methods
+            .iter()
+            .map(|m| m.name)
+            .chain(functions.map(|row| row.name));
+        Some(self.did_you_mean(
+            fault.label("no such function"),
+            name,
+            known.chain(super::aggregate::NAMES.iter().copied()),
+        ))
+    }
+
+    /// `new C(args)` of a library class.
+    pub(super) fn new_library_object(
+        &mut self,
+        class: ClassId,
+        args: Vec<Expr>,
+        span: Span,
+    ) -> Option<Expr> {
+        let all = library::constructors_of(class);
+        if all.is_empty() {
+            let message = format!("`{}` cannot be made with `new`", class.name());
+            self.report(Diagnostic::error("bad-new", span, message));
+            return None;
+        }
+        let (id, args) = self.choose_constructor(class.name(), all, args, span)?;
+        Some(Expr {
+            kind: ExprKind::NewObject(id, args),
+            ty: Type::Class(class),
+            span,
+        })
+    }
+
+    /// `new String(…)`.
+    pub(super) fn new_string(&mut self, args: Vec<Expr>, span: Span) -> Option<Expr> {
+        let all = [ConstructorId::String, ConstructorId::StringCopy];
+        let (id, args) = self.choose_constructor("String", &all, args, span)?;
+        Some(Expr {
+            kind: ExprKind::NewObject(id, args),
+            ty: Type::String,
+            span,
+        })
+    }
+
+    fn choose_constructor(
+        &mut self,
+        name: &str,
+        all: &[ConstructorId],
+        args: Vec<Expr>,
+        span: Span,
+    ) -> Option<(ConstructorId, Vec<Expr>)> {
+        let overloads: Vec<_> = all
+            .iter()
+            .map(|&id| Overload::of_signature(id, id.signature(), self))
+            .collect();
+        let (id, args) = self.choose(name, span, &overloads, args)?;
+        self.note_effect(id.signature().effect);
+        Some((id, args))
+    }
+}

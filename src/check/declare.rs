@@ -1,0 +1,532 @@
+//! First pass: modules with their fields, methods and variables of all files.
+
+use std::collections::HashMap;
+
+use super::model::{Constant, MethodId, StaticId, Type};
+use super::{Checker, SourceModel, constant};
+use crate::diag::{Diagnostic, Span};
+use crate::graph::{FieldId, FieldKind, NewField, TypeId, TypeTable};
+use crate::library::ClassId;
+use crate::syntax::ast;
+use crate::turtle::{self, FieldType};
+
+/// More fields in one module are taken for a fault: field numbers are small.
+const MAX_FIELDS: usize = 4096;
+/// More types are taken for a fault: type numbers are small.
+const MAX_TYPES: usize = 60_000;
+
+/// A file.
+pub(super) struct FileInfo<'a> {
+    /// Name by which other files refer to it.
+    pub(super) name: String,
+    pub(super) ast: &'a ast::File,
+    /// Classes whose static members it imports by `.*`, by simple name.
+    pub(super) static_imports: Vec<&'a str>,
+}
+
+impl<'a> FileInfo<'a> {
+    pub(super) fn new(source: &'a SourceModel) -> Self {
+        let name = source.name.rsplit(['/', '\\']).next().unwrap_or_default();
+        let name = name.strip_suffix(".rgg").unwrap_or(name).trim();
+        let imports = source.ast.imports.iter().filter(|import| import.is_static);
+        // `import static a.B.*` and `import static a.B.c` both make members of `B` known.
+        let class = imports.filter_map(|import| {
+            let from_end = if import.is_wildcard { 1 } else { 2 };
+            let at = import.path.len().checked_sub(from_end)?;
+            Some(import.path[at].name.trim())
+        });
+        Self {
+            name: name.into(),
+            ast: &source.ast,
+            static_imports: class.collect(),
+        }
+    }
+}
+
+/// A field of a node type.
+#[derive(Clone, Debug)]
+pub(super) struct FieldInfo {
+    /// `None` where it could not be read.
+    pub(super) ty: Option<Type>,
+    pub(super) is_final: bool,
+}
+
+/// A module.
+pub(super) struct ModuleInfo<'a> {
+    pub(super) ast: &'a ast::Module,
+    pub(super) file: usize,
+    pub(super) type_id: TypeId,
+    /// Fields that the constructor's arguments fill, in order; also the positions of patterns.
+    pub(super) params: Vec<FieldId>,
+    /// Values of parameters that are left out.
+    pub(super) defaults: Vec<Option<Constant>>,
+    /// Whether its parent could not be found: nothing can be said about inherited members.
+    pub(super) is_orphan: bool,
+}
+
+/// A method.
+pub(super) struct MethodInfo<'a> {
+    pub(super) name: &'a str,
+    pub(super) file: usize,
+    /// The module it belongs to.
+    pub(super) owner: Option<TypeId>,
+    pub(super) params: Vec<Option<Type>>,
+    pub(super) is_varargs: bool,
+    pub(super) is_static: bool,
+    /// `None` where it could not be read.
+    pub(super) result: Option<Type>,
+    pub(super) source: MethodSource<'a>,
+}
+
+/// Where the body of a method comes from.
+#[derive(Clone, Copy)]
+pub(super) enum MethodSource<'a> {
+    Written(&'a ast::Method),
+    /// `{ … }` or `static { … }` at the top of a file.
+    Initializer(&'a ast::Block),
+}
+
+/// A variable of the model.
+pub(super) struct StaticInfo<'a> {
+    pub(super) name: &'a str,
+    pub(super) file: usize,
+    /// The module it is a static member of.
+    pub(super) owner: Option<TypeId>,
+    /// `None` where it could not be read.
+    pub(super) ty: Option<Type>,
+    pub(super) is_final: bool,
+    pub(super) source: StaticSource<'a>,
+    pub(super) span: Span,
+}
+
+/// Where a variable comes from.
+#[derive(Clone, Copy)]
+pub(super) enum StaticSource<'a> {
+    Written(&'a ast::Field),
+    /// Stands for an initializer block among the variables, so that it runs in its place.
+    Initializer(MethodId),
+}
+
+/// The fields of the built-in types, by type and number.
+pub(super) fn builtin_fields(types: &TypeTable, node: TypeId) -> Vec<Vec<FieldInfo>> {
+    let mut all: Vec<Vec<FieldInfo>> = vec![];
+    for (id, ty) in types.iter() {
+        let mut fields = ty
+            .parent
+            .map_or(vec![], |parent| all[usize::from(parent.0)].clone());
+        let own = turtle::builtin(id).map_or(&[][..], |row| row.fields);
+        fields.extend(own.iter().map(|field| FieldInfo {
+            ty: Some(builtin_type(field.ty, node)),
+            is_final: false,
+        }));
+        all.push(fields);
+    }
+    all
+}
+
+fn builtin_type(ty: FieldType, node: TypeId) -> Type {
+    match ty {
+        FieldType::Boolean => Type::Boolean,
+        FieldType::Int => Type::Int,
+        FieldType::Float => Type::Float,
+        FieldType::Double => Type::Double,
+        FieldType::String => Type::String,
+        FieldType::Vector => Type::Class(ClassId::Tuple3d),
+        FieldType::Transformation => Type::Object,
+        FieldType::Shader => Type::Class(ClassId::Shader),
+        FieldType::Light => Type::Class(ClassId::Light),
+        FieldType::Node => Type::Node(node),
+    }
+}
+
+/// How the graph keeps a field of this type; the type need not be known for that.
+fn field_kind(ty: &ast::TypeRef) -> FieldKind {
+    let primitive = if ty.dims == 0 && ty.path.len() == 1 {
+        ty.path[0].name.as_str()
+    } else {
+        ""
+    };
+    match primitive {
+        "boolean" => FieldKind::Boolean,
+        "byte" => FieldKind::Byte,
+        "short" => FieldKind::Short,
+        "char" => FieldKind::Char,
+        "int" => FieldKind::Int,
+        "long" => FieldKind::Long,
+        "float" => FieldKind::Float,
+        "double" => FieldKind::Double,
+        _ => FieldKind::Object,
+    }
+}
+
+/// Own fields of a module: parameters first, then the fields of its body.
+fn own_fields(module: &ast::Module) -> impl Iterator<Item = (&ast::TypeRef, &ast::Ident, bool)> {
+    let params = module.params.iter().filter_map(|param| match param {
+        ast::ModuleParam::Field { ty, name, .. } => Some((ty, name, false)),
+        ast::ModuleParam::Super(_) => None,
+    });
+    let members = module.members.iter().filter_map(|item| match item {
+        ast::Item::Field(field) if !field.modifiers.is_static => Some((
+            &field.ty,
+            &field.name,
+            field.modifiers.is_final && field.init.is_some(),
+        )),
+        _ => None,
+    });
+    params.chain(members)
+}
+
+impl<'a> Checker<'a> {
+    /// Declares everything of all files.
+    pub(super) fn declare(&mut self) {
+        self.refuse_classes();
+        self.declare_modules();
+        self.resolve_fields();
+        for file in self.file_order() {
+            let ast = self.files[file].ast;
+            self.cx.file = file;
+            for item in &ast.items {
+                self.declare_member(item, None);
+            }
+        }
+        for module in 0..self.modules.len() {
+            let (ast, owner) = (self.modules[module].ast, self.modules[module].type_id);
+            self.cx.file = self.modules[module].file;
+            for item in &ast.members {
+                self.declare_member(item, Some(owner));
+            }
+        }
+        self.check_overrides();
+    }
+
+    /// The files in order of initialization: as given, but what a file imports comes before it, as where Java loads classes.
+    fn file_order(&self) -> Vec<usize> {
+        let (mut order, mut seen) = (vec![], vec![false; self.files.len()]);
+        for first in 0..self.files.len() {
+            let mut path = vec![(first, 0)];
+            while let Some((file, next)) = path.pop() {
+                if next == 0 && std::mem::replace(&mut seen[file], true) {
+                    continue;
+                }
+                if let Some(import) = self.files[file].static_imports.get(next) {
+                    path.push((file, next + 1));
+                    let imported = self
+                        .files
+                        .iter()
+                        .position(|f| f.name == *import && !f.name.is_empty());
+                    path.extend(imported.filter(|&i| !seen[i]).map(|i| (i, 0)));
+                } else {
+                    order.push(file);
+                }
+            }
+        }
+        order
+    }
+
+    /// Adds all modules to the table, each after the one it extends, else in textual order.
+    fn declare_modules(&mut self) {
+        let mut found: HashMap<&'a str, (usize, &'a ast::Module)> = HashMap::new();
+        let mut order: Vec<(usize, &'a ast::Module)> = vec![];
+        for (file, info) in self.files.iter().enumerate() {
+            for item in &info.ast.items {
+                let ast::Item::Module(module) = item else {
+                    continue;
+                };
+                if let Some((_, first)) = found.get(module.name.name.as_str()) {
+                    let message = format!("module `{}` is declared twice", module.name.name);
+                    let fault = Diagnostic::error("duplicate-module", module.name.span, message);
+                    self.diagnostics
+                        .push(fault.also(first.name.span, "first here"));
+                    continue;
+                }
+                found.insert(&module.name.name, (file, module));
+                order.push((file, module));
+            }
+        }
+        for &(file, module) in &order {
+            self.declare_lineage(file, module, &found);
+        }
+    }
+
+    /// Adds a module after those it extends.
+    fn declare_lineage(
+        &mut self,
+        file: usize,
+        module: &'a ast::Module,
+        found: &HashMap<&'a str, (usize, &'a ast::Module)>,
+    ) {
+        // Walk up to what is known already, then add on the way back.
+        let mut waiting = vec![(file, module)];
+        let mut names = vec![module.name.name.as_str()];
+        while let Some(parent) = waiting
+            .last()
+            .and_then(|(_, m)| m.extends.as_ref())
+            .and_then(|e| e.parent.path.last())
+        {
+            let name = parent.name.as_str();
+            if self.module_names.contains_key(name) {
+                break;
+            }
+            let Some(&next) = found.get(name) else { break };
+            if names.contains(&name) {
+                // A module that extends a built-in type of its own name is no cycle.
+                if names.last() != Some(&name) || self.types.find(name).is_none() {
+                    let message = format!("module `{name}` extends itself");
+                    let hint = "a module can extend only modules that do not extend it";
+                    self.report(
+                        Diagnostic::error("inheritance-cycle", parent.span, message).hint(hint),
+                    );
+                }
+                break;
+            }
+            names.push(name);
+            waiting.push(next);
+        }
+        while let Some((file, module)) = waiting.pop() {
+            if !self.module_names.contains_key(&module.name.name) {
+                self.add_module(file, module);
+            }
+        }
+    }
+
+    fn add_module(&mut self, file: usize, module: &'a ast::Module) {
+        let parent = module
+            .extends
+            .as_ref()
+            .map(|extends| self.parent_type(&extends.parent));
+        let is_orphan = parent.is_some_and(|p| p.is_none());
+        let parent = parent.flatten().unwrap_or(self.node);
+        let mut own: Vec<NewField> = own_fields(module)
+            .map(|(ty, name, _)| NewField::new(&name.name, field_kind(ty)))
+            .collect();
+        if own.len() + self.types[parent].fields.len() > MAX_FIELDS || self.types.len() >= MAX_TYPES
+        {
+            let message = format!(
+                "module `{}` is one too many or has too many fields",
+                module.name.name
+            );
+            self.report(Diagnostic::error("too-large", module.name.span, message));
+            own.clear();
+            if self.types.len() >= MAX_TYPES {
+                return;
+            }
+        }
+        let type_id = self.types.add_module(
+            &module.name.name,
+            parent,
+            module.modifiers.is_abstract,
+            &own,
+        );
+        self.module_names.insert(module.name.name.clone(), type_id);
+        self.modules.push(ModuleInfo {
+            ast: module,
+            file,
+            type_id,
+            params: vec![],
+            defaults: vec![],
+            is_orphan,
+        });
+    }
+
+    /// The node type that a module extends.
+    fn parent_type(&mut self, parent: &ast::TypeRef) -> Option<TypeId> {
+        let name = parent.path.last()?.name.as_str();
+        let found = self
+            .module_names
+            .get(name)
+            .copied()
+            .or_else(|| self.types.find(name));
+        if found.is_none() && !self.refused.contains(name) {
+            let fault = self.unknown_node_type(name, parent.span);
+            self.report(fault);
+        }
+        found
+    }
+
+    /// Finds the types of all fields and the fields that parameters fill.
+    fn resolve_fields(&mut self) {
+        for index in 0..self.modules.len() {
+            let ModuleInfo {
+                ast, file, type_id, ..
+            } = self.modules[index];
+            self.cx.file = file;
+            let parent = self.types[type_id].parent.unwrap_or(self.node);
+            let mut fields = self.fields[usize::from(parent.0)].clone();
+            let n_inherited = fields.len();
+            let mut names: HashMap<&str, Span> = HashMap::new();
+            for (ty, name, is_final) in own_fields(ast) {
+                fields.push(FieldInfo {
+                    ty: self.resolve_value_type(ty),
+                    is_final,
+                });
+                if let Some(first) = names.insert(&name.name, name.span) {
+                    let message = format!("field `{}` is declared twice", name.name);
+                    self.report(
+                        Diagnostic::error("duplicate-field", name.span, message)
+                            .also(first, "first here"),
+                    );
+                }
+            }
+            self.fields.push(fields);
+            self.resolve_params(index, parent, n_inherited);
+        }
+    }
+
+    fn resolve_params(&mut self, index: usize, parent: TypeId, n_inherited: usize) {
+        let ast = self.modules[index].ast;
+        let (mut params, mut defaults, mut own) = (vec![], vec![], n_inherited);
+        for param in &ast.params {
+            match param {
+                ast::ModuleParam::Field { default, name, .. } => {
+                    params.push(FieldId(own as u16));
+                    own += 1;
+                    let value = default.as_ref().map(|e| (e, constant::of_literal(e)));
+                    if let Some((e, None)) = value {
+                        let message = format!(
+                            "the default of parameter `{}` must be a number or text",
+                            name.name
+                        );
+                        self.report(Diagnostic::error("parameter-default", e.span, message));
+                    }
+                    defaults.push(value.and_then(|(_, value)| value));
+                }
+                ast::ModuleParam::Super(name) => {
+                    defaults.push(None);
+                    match self.visible_field(parent, &name.name) {
+                        Some(field) => params.push(field),
+                        None if self.modules[index].is_orphan => {}
+                        None => {
+                            let fault = self.unknown_field(parent, &name.name, name.span);
+                            self.report(fault);
+                        }
+                    }
+                }
+            }
+        }
+        (self.modules[index].params, self.modules[index].defaults) = (params, defaults);
+    }
+
+    /// Adds a method or variable; modules were added before, and instance fields belong to their module.
+    fn declare_member(&mut self, item: &'a ast::Item, owner: Option<TypeId>) {
+        match item {
+            ast::Item::Module(module) if owner.is_some() => self.refuse_nested_module(module),
+            ast::Item::Class(class) if owner.is_some() => self.refuse_class(class),
+            ast::Item::Module(_) | ast::Item::Class(_) => {}
+            ast::Item::Method(method) => self.declare_method(method, owner),
+            ast::Item::Field(field) if owner.is_none() || field.modifiers.is_static => {
+                self.declare_static(field, owner)
+            }
+            ast::Item::Initializer { body, is_static } if owner.is_none() || *is_static => {
+                self.declare_initializer(body, owner);
+            }
+            ast::Item::Field(_) | ast::Item::Initializer { .. } => {}
+        }
+    }
+
+    fn declare_method(&mut self, method: &'a ast::Method, owner: Option<TypeId>) {
+        let Some(result) = &method.result else {
+            self.refuse_constructor(method, owner);
+            return;
+        };
+        let result = self.resolve_type(result);
+        let params: Vec<_> = method.params.iter().map(|p| self.param_type(p)).collect();
+        let id = MethodId(self.methods.len() as u32);
+        let name = method.name.name.as_str();
+        let same = self.method_names.entry(name.into()).or_default();
+        let twin = same.iter().find(|other| {
+            let other = &self.methods[other.0 as usize];
+            other.owner == owner
+                && other.params == params
+                && (owner.is_some() || other.file == self.cx.file)
+        });
+        if let Some(twin) = twin {
+            let message = format!("method `{name}` is declared twice with the same parameters");
+            let mut fault = Diagnostic::error("duplicate-method", method.name.span, message);
+            if let MethodSource::Written(first) = self.methods[twin.0 as usize].source {
+                fault = fault.also(first.name.span, "first here");
+            }
+            self.report(fault);
+            return;
+        }
+        same.push(id);
+        if let Some(owner) = owner {
+            self.methods_of.entry(owner).or_default().push(id);
+        }
+        let source = MethodSource::Written(method);
+        let is_varargs = method.params.last().is_some_and(|p| p.is_varargs);
+        let is_static = method.modifiers.is_static || owner.is_none();
+        self.methods.push(MethodInfo {
+            name,
+            file: self.cx.file,
+            owner,
+            params,
+            is_varargs,
+            is_static,
+            result,
+            source,
+        });
+    }
+
+    fn param_type(&mut self, param: &ast::Param) -> Option<Type> {
+        let ty = self.resolve_value_type(&param.ty)?;
+        Some(if param.is_varargs {
+            Type::Array(Box::new(ty))
+        } else {
+            ty
+        })
+    }
+
+    fn declare_static(&mut self, field: &'a ast::Field, owner: Option<TypeId>) {
+        let ty = self.resolve_value_type(&field.ty);
+        let name = field.name.name.as_str();
+        let same = self.static_names.entry(name.into()).or_default();
+        let twin = same
+            .iter()
+            .map(|id| &self.statics[id.0 as usize])
+            .find(|s| s.owner == owner && s.file == self.cx.file);
+        if let Some(twin) = twin {
+            let message = format!("variable `{name}` is declared twice");
+            let fault = Diagnostic::error("duplicate-variable", field.name.span, message)
+                .also(twin.span, "first here");
+            self.report(fault);
+            return;
+        }
+        same.push(StaticId(self.statics.len() as u32));
+        let is_final = field.modifiers.is_final && field.init.is_some();
+        let source = StaticSource::Written(field);
+        self.statics.push(StaticInfo {
+            name,
+            file: self.cx.file,
+            owner,
+            ty,
+            is_final,
+            source,
+            span: field.name.span,
+        });
+    }
+
+    fn declare_initializer(&mut self, body: &'a ast::Block, owner: Option<TypeId>) {
+        let (file, name) = (self.cx.file, "{…}");
+        let id = MethodId(self.methods.len() as u32);
+        self.methods.push(MethodInfo {
+            name,
+            file,
+            owner,
+            params: vec![],
+            is_varargs: false,
+            is_static: true,
+            result: Some(Type::Void),
+            source: MethodSource::Initializer(body),
+        });
+        let source = StaticSource::Initializer(id);
+        self.statics.push(StaticInfo {
+            name,
+            file,
+            owner,
+            ty: Some(Type::Int),
+            is_final: true,
+            source,
+            span: body.span,
+        });
+    }
+}

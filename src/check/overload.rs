@@ -1,0 +1,205 @@
+//! Choosing among overloads, by Java's phases: first without, then with `double` for `float` and boxing, then as text.
+
+use super::Checker;
+use super::model::{Expr, ExprKind, Type};
+use super::types::Fit;
+use crate::diag::{Diagnostic, Span};
+use crate::library::{Signature, ValueType};
+
+/// What one parameter takes.
+#[derive(Clone, Debug)]
+pub(super) enum Wanted {
+    Value(Type),
+    /// Anything, as its text.
+    Text,
+    /// Its type could not be read; anything fits.
+    Unknown,
+}
+
+/// An overload.
+#[derive(Clone, Debug)]
+pub(super) struct Overload<Id> {
+    pub(super) id: Id,
+    pub(super) params: Vec<Wanted>,
+    /// Whether the last parameter is an array that may be given element by element.
+    pub(super) is_varargs: bool,
+}
+
+impl<Id: Copy> Overload<Id> {
+    /// The row of a library table as an overload.
+    pub(super) fn of_signature(id: Id, row: &Signature, checker: &Checker<'_>) -> Self {
+        let params = row.params.iter().map(|param| match param {
+            ValueType::Text => Wanted::Text,
+            value => Wanted::Value(value.to_type(checker.node)),
+        });
+        Self {
+            id,
+            params: params.collect(),
+            is_varargs: false,
+        }
+    }
+}
+
+impl Checker<'_> {
+    /// The overload that suits the arguments best, with the arguments converted; reported if there is none.
+    pub(super) fn choose<Id: Copy>(
+        &mut self,
+        name: &str,
+        span: Span,
+        overloads: &[Overload<Id>],
+        args: Vec<Expr>,
+    ) -> Option<(Id, Vec<Expr>)> {
+        for phase in [Fit::Direct, Fit::Loose, Fit::Text] {
+            let fitting: Vec<&Overload<Id>> = overloads
+                .iter()
+                .filter(|o| self.takes(o, &args).is_some_and(|worst| worst <= phase))
+                .collect();
+            if let Some(best) = self.most_specific(&fitting) {
+                let args = self.pass(best, args);
+                return Some((best.id, args));
+            }
+        }
+        let fault = self.no_overload(name, span, overloads, &args);
+        self.report(fault);
+        None
+    }
+
+    /// Whether some overload takes these arguments.
+    pub(super) fn any_takes<Id>(&self, overloads: &[Overload<Id>], args: &[Expr]) -> bool {
+        overloads.iter().any(|o| self.takes(o, args).is_some())
+    }
+
+    /// How well the worst argument fits; `None` if the overload does not take them.
+    fn takes<Id>(&self, overload: &Overload<Id>, args: &[Expr]) -> Option<Fit> {
+        if overload.params.len() == args.len() {
+            let mut fits = overload
+                .params
+                .iter()
+                .zip(args)
+                .map(|(param, arg)| self.param_fit(param, &arg.ty));
+            let worst = fits.try_fold(Fit::Direct, |worst, fit| Some(worst.max(fit?)));
+            if worst.is_some() {
+                return worst;
+            }
+        }
+        self.spread(overload, args).then_some(Fit::Text)
+    }
+
+    /// Whether the last arguments are the elements of the last parameter.
+    fn spread<Id>(&self, overload: &Overload<Id>, args: &[Expr]) -> bool {
+        let Some((Wanted::Value(Type::Array(element)), first)) = overload.params.split_last()
+        else {
+            return false;
+        };
+        overload.is_varargs
+            && args.len() >= first.len()
+            && first
+                .iter()
+                .zip(args)
+                .all(|(param, arg)| self.param_fit(param, &arg.ty).is_some())
+            && args[first.len()..]
+                .iter()
+                .all(|arg| self.fit(&arg.ty, element).is_some())
+    }
+
+    fn param_fit(&self, param: &Wanted, arg: &Type) -> Option<Fit> {
+        match param {
+            Wanted::Value(ty) => self.fit(arg, ty),
+            Wanted::Text if *arg == Type::Void => None,
+            Wanted::Text => Some(Fit::Text),
+            Wanted::Unknown => Some(Fit::Direct),
+        }
+    }
+
+    /// The overload whose parameters all fit those of every other; else the first.
+    fn most_specific<'o, Id>(&self, fitting: &[&'o Overload<Id>]) -> Option<&'o Overload<Id>> {
+        let beats = |a: &Overload<Id>, b: &Overload<Id>| {
+            a.params.len() == b.params.len()
+                && a.params.iter().zip(&b.params).all(|(x, y)| match (x, y) {
+                    (Wanted::Value(x), Wanted::Value(y)) => self.fit(x, y) == Some(Fit::Direct),
+                    (Wanted::Text, Wanted::Value(_)) => false,
+                    _ => true,
+                })
+        };
+        let best = fitting.iter().find(|a| fitting.iter().all(|b| beats(a, b)));
+        best.or(fitting.first()).copied()
+    }
+
+    /// The arguments as the overload wants them.
+    fn pass<Id>(&self, overload: &Overload<Id>, mut args: Vec<Expr>) -> Vec<Expr> {
+        let is_spread = overload.is_varargs
+            && !(args.len() == overload.params.len()
+                && overload
+                    .params
+                    .iter()
+                    .zip(&args)
+                    .all(|(param, arg)| self.param_fit(param, &arg.ty).is_some()));
+        if is_spread
+            && let Some((Wanted::Value(ty @ Type::Array(element)), first)) =
+                overload.params.split_last()
+        {
+            let rest = args.split_off(first.len());
+            let span = rest.first().map_or_else(Span::default, |e| e.span);
+            let rest = rest
+                .into_iter()
+                .map(|arg| self.convert(arg, element))
+                .collect();
+            args.push(Expr {
+                kind: ExprKind::ArrayLiteral(rest),
+                ty: ty.clone(),
+                span,
+            });
+        }
+        let pass_one = |(param, arg): (&Wanted, Expr)| match param {
+            Wanted::Value(ty) => self.convert(arg, ty),
+            Wanted::Text => self.text(arg),
+            Wanted::Unknown => arg,
+        };
+        overload.params.iter().zip(args).map(pass_one).collect()
+    }
+
+    /// Why no overload fits, said as closely as can be.
+    fn no_overload<Id>(
+        &self,
+        name: &str,
+        span: Span,
+        overloads: &[Overload<Id>],
+        args: &[Expr],
+    ) -> Diagnostic {
+        if let [only] = overloads
+            && only.params.len() == args.len()
+        {
+            let bad = only
+                .params
+                .iter()
+                .zip(args)
+                .find(|(param, arg)| self.param_fit(param, &arg.ty).is_none());
+            if let Some((Wanted::Value(ty), arg)) = bad {
+                return self.mismatch(&arg.ty, ty, arg.span);
+            }
+        }
+        let given = self.type_names(args.iter().map(|a| &a.ty));
+        let given = if given.is_empty() {
+            "no arguments".into()
+        } else {
+            format!("({given})")
+        };
+        let message = format!("`{name}` does not take {given}");
+        let forms: Vec<String> = overloads
+            .iter()
+            .take(8)
+            .map(|o| format!("`{name}({})`", self.wanted(&o.params)))
+            .collect();
+        Diagnostic::error("wrong-arguments", span, message)
+            .hint(format!("it can be called as {}", forms.join(", ")))
+    }
+
+    fn wanted(&self, params: &[Wanted]) -> String {
+        let name = |param: &Wanted| match param {
+            Wanted::Value(ty) => self.type_name(ty),
+            Wanted::Text => "any value".into(),
+            Wanted::Unknown => "?".into(),
+        };
+        params.iter().map(name).collect::<Vec<_>>().join(", ")
+    }
+}

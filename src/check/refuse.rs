@@ -1,0 +1,226 @@
+//! What the language has and this program has not: refused by name, with what to write instead.
+
+use super::Checker;
+use crate::diag::{Diagnostic, Span};
+use crate::graph::TypeId;
+use crate::syntax::ast;
+
+/// Types of GroIMP and Java that models use and that are not supported, with what to do instead.
+const TYPES: &[(&[&str], &str)] = &[
+    (
+        &[
+            "FloatToFloat",
+            "DoubleToDouble",
+            "IntToInt",
+            "ObjectToObject",
+            "FunctionRef",
+        ],
+        "write a method and call it",
+    ),
+    (
+        &["Point3f", "Vector3f", "Tuple3f"],
+        "write `Point3d`, `Vector3d` or `Tuple3d`",
+    ),
+    (
+        &[
+            "Matrix3d",
+            "Matrix4d",
+            "Matrix34d",
+            "TMatrix4d",
+            "AxisAngle4d",
+            "Quat4d",
+        ],
+        "write `Translate`, `Rotate` and `Scale` nodes",
+    ),
+    (
+        &["Lognormal", "Normal", "Uniform"],
+        "write `lognormal(mean, sd)`, `normal(mean, sd)` or `random(a, b)`",
+    ),
+    (
+        &["DatasetRef", "Dataset", "XY_PLOT"],
+        "print the numbers with `println` and plot them elsewhere",
+    ),
+    (
+        &["FluxLightModel", "FluxLightModelTag", "MeasureMode"],
+        "write `LightModel`",
+    ),
+    (
+        &["SensorNode", "SensorGrid", "AreaSensorNode"],
+        "measure with a `Parallelogram` and `getAbsorbedPower3d`",
+    ),
+    (
+        &[
+            "NURBSSurface",
+            "NURBSCurve",
+            "BSplineSurface",
+            "BSplineCurve",
+            "HeightField",
+            "CSGNode",
+        ],
+        "use `Cylinder`, `Frustum`, `Sphere` and `Parallelogram`",
+    ),
+    (
+        &[
+            "PolygonMesh",
+            "MeshNode",
+            "FloatList",
+            "IntList",
+            "VertexGrid",
+            "Supershape",
+            "PointCloud",
+        ],
+        "use `Parallelogram` and the other primitives",
+    ),
+    (
+        &[
+            "AlgorithmSwitchShader",
+            "SideSwitchShader",
+            "ShaderRef",
+            "ImageMap",
+            "Checker",
+            "Laplace3D",
+        ],
+        "use `RGBAShader` or `Phong`",
+    ),
+    (
+        &[
+            "File",
+            "FileReader",
+            "FileWriter",
+            "BufferedReader",
+            "BufferedWriter",
+            "PrintWriter",
+            "StringTokenizer",
+        ],
+        "write the numbers into the model, as an array",
+    ),
+    (
+        &["Thread", "Runnable", "Socket", "Class", "Method"],
+        "models run in one thread and cannot reach the machine",
+    ),
+    (
+        &["SRoot", "TypeRoot", "TypeAxiom"],
+        "multiscale models are not supported",
+    ),
+    (
+        &[
+            "HashSet",
+            "TreeMap",
+            "TreeSet",
+            "Hashtable",
+            "LinkedHashMap",
+            "Iterator",
+        ],
+        "use `ArrayList` or `HashMap`",
+    ),
+];
+
+/// Functions that are not supported, with what to do instead.
+const FUNCTIONS: &[(&[&str], &str)] = &[
+    (
+        &["shader", "image", "reference"],
+        "write `new RGBAShader(r, g, b)`",
+    ),
+    (
+        &["makeSnapshot", "makeRendering"],
+        "render with `understory render`",
+    ),
+    (
+        &["chart", "dataset", "data"],
+        "print the numbers with `println`",
+    ),
+    (
+        &["runLater", "run", "stop", "workbench", "graph", "view"],
+        "there is no workbench here; call the method directly",
+    ),
+    (&["import3d", "export3d"], "export with `understory export`"),
+    (
+        &["transformation"],
+        "use `location`, `direction` and `endlocation`",
+    ),
+    (&["getHours", "execute"], "models cannot reach the machine"),
+];
+
+fn hint(table: &[(&[&'static str], &'static str)], name: &str) -> Option<&'static str> {
+    table
+        .iter()
+        .find(|(names, _)| names.contains(&name))
+        .map(|(_, hint)| *hint)
+}
+
+/// What to use instead of a type that is not supported.
+pub(super) fn type_hint(name: &str) -> Option<&'static str> {
+    hint(TYPES, name)
+}
+
+/// What to use instead of a function that is not supported.
+pub(super) fn function_hint(name: &str) -> Option<&'static str> {
+    hint(FUNCTIONS, name)
+}
+
+impl Checker<'_> {
+    /// Refuses classes at the top of files, before anything uses their names.
+    pub(super) fn refuse_classes(&mut self) {
+        for file in 0..self.files.len() {
+            for item in &self.files[file].ast.items {
+                if let ast::Item::Class(class) = item {
+                    self.refuse_class(class);
+                }
+            }
+        }
+    }
+
+    /// `class`, `interface`, `enum`.
+    pub(super) fn refuse_class(&mut self, class: &ast::Class) {
+        let keyword = class.keyword.name.as_str();
+        let hint = match keyword {
+            "enum" => "declare constants: `const int RED = 0;`",
+            _ => "keep data in modules or arrays, and write methods into the file",
+        };
+        let message = format!("`{keyword}` is not supported");
+        self.report(Diagnostic::error("unsupported-class", class.name.span, message).hint(hint));
+        self.refused.insert(class.name.name.clone());
+        self.refused
+            .extend(class.constants.iter().map(|constant| constant.name.clone()));
+    }
+
+    /// A module inside a module.
+    pub(super) fn refuse_nested_module(&mut self, module: &ast::Module) {
+        let fault = Diagnostic::error(
+            "nested-module",
+            module.name.span,
+            "a module cannot stand inside another one",
+        );
+        self.report(fault.hint("declare it beside the other"));
+        self.refused.insert(module.name.name.clone());
+    }
+
+    /// A method without a result type.
+    pub(super) fn refuse_constructor(&mut self, method: &ast::Method, owner: Option<TypeId>) {
+        let name = &method.name.name;
+        let is_constructor = owner.is_some_and(|owner| *self.types[owner].name == **name);
+        let (message, hint) = if is_constructor {
+            (
+                "modules cannot have constructors of their own".to_owned(),
+                "use parameters and a block `{ … }`".to_owned(),
+            )
+        } else {
+            (
+                format!("method `{name}` has no result type"),
+                format!("write `void {name}(…)` if it gives no value"),
+            )
+        };
+        self.report(Diagnostic::error("no-result-type", method.name.span, message).hint(hint));
+        self.refused.insert(name.clone());
+    }
+
+    /// `float t => …`
+    pub(super) fn refuse_closure(&mut self, span: Span) {
+        let fault = Diagnostic::error(
+            "unsupported-closure",
+            span,
+            "functions as values are not supported",
+        );
+        self.report(fault.hint("write a method and call it"));
+    }
+}
