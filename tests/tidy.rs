@@ -1,12 +1,18 @@
 //! Rules about the source text itself: what the house style promises, a machine checks.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Longest non-test part of a file, in lines.
 const LONGEST_FILE: usize = 500;
-/// Files that may be longer: the syntax tree and the checked model are one list of kinds each.
-const LONG_FILES: [&str; 2] = ["src/syntax/ast.rs", "src/check/model.rs"];
+/// Files that may be longer: lists of kinds, one entry after the other.
+const LONG_FILES: [&str; 3] = [
+    "src/syntax/ast.rs",
+    "src/check/model.rs",
+    "src/turtle/table.rs",
+];
 
 /// A source file, without its tests.
 struct Source {

@@ -206,9 +206,11 @@ impl Request {
                 let Some(text) = given_text(given, row) else {
                     continue;
                 };
-                flags
-                    .set(row.key, &text, Origin::Flag)
-                    .map_err(|error| cli.error(clap::error::ErrorKind::ValueValidation, error))?;
+                flags.set(row.key, &text, Origin::Flag).map_err(|error| {
+                    // The usage line of this command, not that of the whole program.
+                    let mut command = cli.find_subcommand(name).unwrap_or(&cli).clone();
+                    command.error(clap::error::ErrorKind::ValueValidation, error)
+                })?;
             }
         }
         Ok(Self { action, flags })

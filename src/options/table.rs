@@ -1,11 +1,11 @@
 //! The table of options: one row each.
 
 use super::setting::{Origin, SetError, Setting};
-use super::value::{Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Turbidity};
+use super::value::{Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Threads, Turbidity};
 use crate::diag::nearest;
 use crate::math::angle::Angle;
 use glam::DVec3;
-use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
+use std::num::{NonZeroU32, NonZeroU64};
 use std::ops::Range;
 
 /// A command of the program that takes options.
@@ -193,7 +193,7 @@ options! {
     /// Growth and pictures that need more memory than this are refused; `auto`: three quarters of what is free
     max_memory: Option<Bytes> = "auto", "max-memory", "BYTES", Model, Machine, GROWING;
     /// Threads to use; `auto`: one for each core. The result does not depend on it
-    threads: Option<NonZeroUsize> = "auto", "threads", "N", Model, Machine, GROWING;
+    threads: Option<Threads> = "auto", "threads", "N", Model, Machine, GROWING;
 
     /// Where the camera stands, in metres; `auto`: where all of the model is in view
     eye: Option<DVec3> = "auto", "eye", "X,Y,Z", Camera, View, PICTURING;

@@ -223,6 +223,19 @@ impl OptionValue for Bytes {
     }
 }
 
+/// A number of threads, 1 to 1024.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Threads(pub NonZeroUsize);
+
+impl OptionValue for Threads {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.parse::<NonZeroUsize>() {
+            Ok(threads) if threads.get() <= 1024 => Ok(Self(threads)),
+            _ => Err("a whole number from 1 to 1024".into()),
+        }
+    }
+}
+
 /// Seconds, more than 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seconds(pub f64);
@@ -302,7 +315,6 @@ whole_numbers! {
     i64: "a whole number of 64 bits";
     NonZeroU32: "a whole number from 1 up";
     NonZeroU64: "a whole number from 1 up";
-    NonZeroUsize: "a whole number from 1 up";
 }
 
 /// `N` finite numbers between commas.
@@ -370,5 +382,6 @@ mod tests {
         );
         assert!(Daylight::parse("10,91").is_err());
         assert!(Ground::parse("1,1,2").is_err());
+        assert!(Threads::parse("0").is_err() && Threads::parse("100000").is_err());
     }
 }

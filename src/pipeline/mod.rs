@@ -3,6 +3,8 @@
 //! read → check → derive → describe → build → prepare → view → write. Each stage is keyed by what it depends on (texts,
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed.
 
+pub mod audience;
+pub mod budget;
 pub mod content_hash;
 pub mod exposing;
 pub mod failure;
@@ -10,5 +12,6 @@ pub mod report;
 pub mod sources;
 pub mod store;
 pub mod surroundings;
+pub mod viewing;
 pub mod viewpoint;
 pub mod world;

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::world::{Entry, World, folder_of};
 use crate::image::format::MAGIC_LENGTH;
 use crate::image::{Format, Picture, encode};
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// A picture file to be.
@@ -63,15 +64,14 @@ impl PictureTarget {
     }
 }
 
-/// A JSON file to be, known by keys that all of its kind have.
+/// A JSON file to be.
 #[derive(Clone, Debug)]
 pub struct JsonTarget {
     path: PathBuf,
-    keys: &'static [&'static str],
 }
 
 impl JsonTarget {
-    /// A JSON object with (at least) `keys` at `path`.
+    /// A JSON object at `path`; an earlier one of its kind is known by its having `keys`.
     ///
     /// # Errors
     /// If the suffix is not `.json`, files cannot be made there, or something else is there already.
@@ -93,7 +93,6 @@ impl JsonTarget {
         })?;
         Ok(Self {
             path: path.to_owned(),
-            keys,
         })
     }
 
@@ -101,9 +100,10 @@ impl JsonTarget {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write(&self, world: &dyn World, object: &serde_json::Value) -> Result<(), Failure> {
-        debug_assert!(self.keys.iter().all(|key| object.get(key).is_some()));
-        put(world, &self.path, format!("{object:#}\n").as_bytes())
+    pub fn write(&self, world: &dyn World, object: &impl Serialize) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(object)
+            .map_err(|error| Failure::World(format!("cannot encode as JSON: {error}")))?;
+        put(world, &self.path, format!("{text}\n").as_bytes())
     }
 }
 

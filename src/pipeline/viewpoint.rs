@@ -45,6 +45,20 @@ pub fn camera(sources: &Sources, options: &Options, view: &View) -> Result<Camer
         .map_err(|error| blame(sources, options, &error))
 }
 
+/// Refuses an impossible camera before the model is grown, if the options alone decide it.
+///
+/// # Errors
+/// As [`camera`].
+pub fn check(sources: &Sources, options: &Options) -> Result<(), Failure> {
+    let is_decided = options.eye.value.is_some() && options.target.value.is_some();
+    let view = view(options, &Bounds3::EMPTY);
+    if is_decided {
+        camera(sources, options, &view).map(drop)
+    } else {
+        Ok(())
+    }
+}
+
 fn blame(sources: &Sources, options: &Options, error: &CameraError) -> Failure {
     let keys: &[&str] = match error {
         CameraError::FieldOfView(_) => &["fov"],

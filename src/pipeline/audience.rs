@@ -1,0 +1,16 @@
+//! Who is told how a run goes.
+
+/// Who is told how a run goes, while it goes. Calls come from any thread.
+pub trait Audience: Sync {
+    /// The model printed this; line ends are part of it.
+    fn printed(&self, text: &str);
+
+    /// A stage of the run begins (`growing`, say); the one before has ended.
+    fn begins(&self, stage: &'static str);
+
+    /// The stage is so far; both in units of its own.
+    fn progress(&self, done: u64, total: u64);
+
+    /// No stage is under way any more.
+    fn ends(&self);
+}

@@ -1,0 +1,245 @@
+//! Preparing a scene for a method of light transport, and looking at it.
+
+use super::audience::Audience;
+use super::exposing;
+use super::failure::Failure;
+use super::report::Effort;
+use super::world::World;
+use crate::camera::Camera;
+use crate::film::{Filter, LinearImage, tone};
+use crate::integrator::driver::{FilmResult, FilmSettings, render_view};
+use crate::integrator::{
+    CancelToken, Method, Path, Progress, RadianceEstimator, RenderContext, RenderError,
+};
+use crate::options::Options;
+use crate::options::value::Renderer;
+use crate::sampler::SamplerKind;
+use crate::scene::Scene;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Longer side in pixels of the picture by which the exposure is decided.
+const EXPOSURE_SIDE: f64 = 96.0;
+/// Its samples per pixel: its blocks of 64 pixels then hold a thousand each.
+const EXPOSURE_SAMPLES: u32 = 16;
+/// With `--time`, samples are limited by the clock and by this only.
+const MOST_SAMPLES: u32 = 1 << 20;
+/// How often the clock is looked at with `--time`.
+const TICK: Duration = Duration::from_millis(20);
+
+/// What looking at a scene needs besides the scene.
+#[derive(Clone, Copy)]
+pub struct Viewing<'a> {
+    /// The clock.
+    pub world: &'a dyn World,
+    /// Who is told how far it is.
+    pub audience: &'a dyn Audience,
+    /// The options of the run.
+    pub options: &'a Options,
+    /// The wish to stop.
+    pub cancel: &'a CancelToken,
+}
+
+/// A scene made ready for one method.
+pub struct Prepared<'s> {
+    estimator: Box<dyn RadianceEstimator + 's>,
+}
+
+/// What the camera saw.
+#[derive(Debug)]
+pub struct Shot {
+    /// Mean radiance of each pixel.
+    pub image: LinearImage,
+    /// What it took.
+    pub effort: Effort,
+    /// Whether it has all the samples that were asked for; otherwise somebody stopped it.
+    pub is_whole: bool,
+}
+
+impl Viewing<'_> {
+    /// Does the work that does not depend on the camera.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn prepare<'s>(&self, scene: &'s Scene) -> Result<Prepared<'s>, Failure> {
+        let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
+        let method = method(self.options);
+        let prepared = method
+            .integrator()
+            .prepare(scene, &self.context(self.cancel, &report));
+        match prepared {
+            Ok(estimator) => Ok(Prepared { estimator }),
+            Err(RenderError::Cancelled { .. }) => Err(Failure::Stopped),
+        }
+    }
+
+    /// The factor that radiance is multiplied by before it is shown: what `--exposure` says, or what suits the picture
+    /// that `camera` sees. Always the same for the same scene, options and camera.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn exposure(&self, prepared: &Prepared<'_>, camera: &Camera) -> Result<f64, Failure> {
+        if let Some(stops) = self.options.exposure.value {
+            return Ok(exposing::factor(stops));
+        }
+        let size = self.options.size.value;
+        let scale = (EXPOSURE_SIDE / f64::from(size.width.max(size.height))).min(1.0);
+        let side = |pixels: u32| ((f64::from(pixels) * scale).round() as u32).max(1);
+        let settings = FilmSettings {
+            width: side(size.width),
+            height: side(size.height),
+            samples_per_pixel: EXPOSURE_SAMPLES,
+            ..self.settings()
+        };
+        let silent = |_: Progress| {};
+        let context = self.context(self.cancel, &silent);
+        let seen = render_view(
+            &*prepared.estimator,
+            camera,
+            &settings,
+            &context,
+            &mut go_on,
+        );
+        match seen {
+            Ok(result) => Ok(tone::auto_exposure(&result.film.image())),
+            Err(RenderError::Cancelled { .. }) => Err(Failure::Stopped),
+        }
+    }
+
+    /// Takes a picture. Stopped early, it is the picture with the samples so far.
+    ///
+    /// # Errors
+    /// If it was stopped before each pixel had a sample.
+    pub fn shoot(&self, prepared: &Prepared<'_>, camera: &Camera) -> Result<Shot, Failure> {
+        let seen = match self.options.time.value {
+            None => {
+                let report =
+                    |progress: Progress| self.audience.progress(progress.done, progress.total);
+                let context = self.context(self.cancel, &report);
+                let settings = self.settings();
+                render_view(
+                    &*prepared.estimator,
+                    camera,
+                    &settings,
+                    &context,
+                    &mut go_on,
+                )
+            }
+            Some(seconds) => self.shoot_until(prepared, camera, Duration::from_secs_f64(seconds.0)),
+        };
+        match seen {
+            Ok(result) => Ok(shot(&result, true)),
+            Err(RenderError::Cancelled {
+                partial: Some(result),
+            }) => {
+                let is_whole = self.options.time.value.is_some() && !self.cancel.is_cancelled();
+                Ok(shot(&result, is_whole))
+            }
+            Err(RenderError::Cancelled { partial: None }) => Err(Failure::Stopped),
+        }
+    }
+
+    /// Adds samples until the time is over, but at least one to each pixel.
+    fn shoot_until(
+        &self,
+        prepared: &Prepared<'_>,
+        camera: &Camera,
+        time: Duration,
+    ) -> Result<FilmResult, RenderError> {
+        let start = self.world.now();
+        let elapsed = || self.world.now().saturating_sub(start);
+        let report = |_: Progress| {
+            self.audience.progress(
+                elapsed().min(time).as_millis() as u64,
+                time.as_millis() as u64,
+            );
+        };
+        let settings = FilmSettings {
+            samples_per_pixel: MOST_SAMPLES,
+            ..self.settings()
+        };
+        let (has_picture, is_done) = (AtomicBool::new(false), AtomicBool::new(false));
+        let stop = CancelToken::default();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !is_done.load(Ordering::Relaxed) {
+                    let is_over = elapsed() >= time && has_picture.load(Ordering::Relaxed);
+                    if is_over || self.cancel.is_cancelled() {
+                        stop.cancel();
+                    }
+                    std::thread::sleep(TICK);
+                }
+            });
+            let context = self.context(&stop, &report);
+            let mut on_pass = |_: &FilmResult| {
+                has_picture.store(true, Ordering::Relaxed);
+                if elapsed() >= time {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            let seen = render_view(
+                &*prepared.estimator,
+                camera,
+                &settings,
+                &context,
+                &mut on_pass,
+            );
+            is_done.store(true, Ordering::Relaxed);
+            seen
+        })
+    }
+
+    fn settings(&self) -> FilmSettings {
+        let size = self.options.size.value;
+        FilmSettings {
+            width: size.width,
+            height: size.height,
+            samples_per_pixel: self.options.samples.value.get(),
+            filter: Filter::default(),
+            sampler: SamplerKind::default(),
+        }
+    }
+
+    fn context<'c>(
+        &self,
+        cancel: &'c CancelToken,
+        progress: &'c (dyn Fn(Progress) + Sync),
+    ) -> RenderContext<'c> {
+        RenderContext {
+            seed: self.options.seed.value.cast_unsigned(),
+            cancel,
+            progress,
+        }
+    }
+}
+
+/// The method of light transport that the options ask for, with its settings.
+fn method(options: &Options) -> Method {
+    match options.renderer.value {
+        Renderer::Path => Method::Path(Path {
+            max_depth: options.max_depth.value,
+            ..Path::default()
+        }),
+    }
+}
+
+fn shot(result: &FilmResult, is_whole: bool) -> Shot {
+    let report = &result.report;
+    let effort = Effort {
+        n_rays: report.rays.total(),
+        samples_per_pixel: report.samples_per_pixel,
+        relative_error: report.error.map(|error| error.relative),
+    };
+    Shot {
+        image: result.film.image(),
+        effort,
+        is_whole,
+    }
+}
+
+fn go_on(_: &FilmResult) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
