@@ -1,8 +1,8 @@
 //! Where a node is: `location`, `direction` and their kin, without drawing anything.
 //!
 //! A node's frame is its predecessor's after that one's move. Asking for a node walks up to the nearest ancestor whose
-//! state is known and comes back down. One state in [`STRIDE`] on the way is kept, so asking for all nodes of a chain
-//! costs [`STRIDE`] steps each at most, and memory stays far below that of the graph.
+//! state is known and comes back down. One state in eight on the way is kept, so asking for all nodes of a chain
+//! costs eight steps each at most, and memory stays far below that of the graph.
 
 use super::reading::{action, own_transform};
 use super::state::TurtleState;

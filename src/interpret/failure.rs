@@ -1,0 +1,102 @@
+//! What can go wrong while drawing, in words.
+
+use super::organs::Organs;
+use crate::diag::{Diagnostic, Label, Severity, Span};
+use crate::scene::SceneError;
+
+/// Why a model cannot be drawn.
+pub type Failure = Box<Diagnostic>;
+
+/// A diagnostic about something that may have no place in the model's text, such as a built-in node.
+pub(super) fn diagnostic(
+    severity: Severity,
+    slug: &'static str,
+    message: String,
+    span: Option<Span>,
+) -> Diagnostic {
+    let primary = span.map(|span| Label {
+        span,
+        text: String::new(),
+    });
+    Diagnostic {
+        severity,
+        slug,
+        message,
+        primary,
+        secondary: vec![],
+        hints: vec![],
+        trace: vec![],
+    }
+}
+
+/// Tells why the scene of a drawn model cannot be built, naming the organ at fault.
+#[must_use]
+pub fn explain(error: &SceneError, organs: &Organs) -> Diagnostic {
+    let organ = error.organ();
+    let name = organ.and_then(|organ| organs.type_name(organ));
+    let message = match name {
+        Some(name) => format!("`{name}` cannot be drawn: {error}"),
+        None => format!("the model cannot be drawn: {error}"),
+    };
+    let span = organ.and_then(|organ| organs.declared_at(organ));
+    diagnostic(Severity::Error, "scene", message, span)
+}
+
+/// A size or place that is no number.
+pub(super) fn not_finite(name: &str, span: Option<Span>) -> Failure {
+    let message = format!("{name} has a size or place that is not a finite number");
+    let hint =
+        "look for a division by 0, a root of a negative number or an overflow in its parameters";
+    Box::new(diagnostic(Severity::Error, "not-finite", message, span).hint(hint))
+}
+
+/// More geometry than fits.
+pub(super) fn too_much(name: &str, limit: u64, span: Option<Span>) -> Failure {
+    let message = format!("the geometry needs more than {limit} bytes; {name} was one too many");
+    Box::new(
+        diagnostic(Severity::Error, "geometry-limit", message, span)
+            .hint("draw equal parts once and repeat them with `Instance`, or allow more memory"),
+    )
+}
+
+/// Bodies nested without end.
+pub(super) fn too_deep(name: &str, limit: usize, span: Option<Span>) -> Failure {
+    let message = format!("the body of {name} stands in bodies {limit} deep");
+    Box::new(
+        diagnostic(Severity::Error, "body-depth", message, span)
+            .hint("a body that makes its own module again needs an `if` that ends it"),
+    )
+}
+
+/// Bodies that make nodes without end.
+pub(super) fn too_many_body_nodes(name: &str, limit: u64, span: Option<Span>) -> Failure {
+    let message = format!("bodies of modules make more than {limit} nodes; {name} was one of them");
+    Box::new(
+        diagnostic(Severity::Error, "body-limit", message, span)
+            .hint("does a loop in a body make too many, or a body itself again?"),
+    )
+}
+
+/// An instance within what it draws.
+pub(super) fn endless_instance(span: Option<Span>) -> Failure {
+    let message = "an `Instance` draws a part of the model that contains itself".to_owned();
+    Box::new(
+        diagnostic(Severity::Error, "instance-cycle", message, span)
+            .hint("hang the prototype on a place of its own, such as a branch of the root"),
+    )
+}
+
+/// Instances of instances without end.
+pub(super) fn instances_too_deep(limit: usize, span: Option<Span>) -> Failure {
+    let message = format!("instances are nested more than {limit} deep");
+    Box::new(diagnostic(Severity::Error, "instance-depth", message, span))
+}
+
+/// An instance of a node that is gone.
+pub(super) fn instance_of_nothing(span: Option<Span>) -> Failure {
+    let message = "an `Instance` draws a node that is no longer part of the graph".to_owned();
+    Box::new(
+        diagnostic(Severity::Error, "instance-gone", message, span)
+            .hint("link the prototype to the graph, for example `^ [Hidden prototype:Tree]`"),
+    )
+}

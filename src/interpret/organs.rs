@@ -1,0 +1,69 @@
+//! Which node of the graph a primitive belongs to.
+
+use crate::diag::Span;
+use crate::graph::{NodeId, TypeId, TypeTable};
+use crate::scene::description::OrganId;
+use std::sync::Arc;
+
+/// A node that was drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Organ {
+    /// The node.
+    pub node: NodeId,
+    /// Its type.
+    pub type_id: TypeId,
+}
+
+/// All nodes that were drawn, by organ number, in the order they were drawn. What a body draws belongs to the node that
+/// has the body.
+#[derive(Clone, Debug)]
+pub struct Organs {
+    types: Arc<TypeTable>,
+    /// Where each type is declared.
+    spans: Vec<Option<Span>>,
+    list: Vec<Organ>,
+}
+
+impl Organs {
+    pub(super) const fn new(types: Arc<TypeTable>, spans: Vec<Option<Span>>) -> Self {
+        Self {
+            types,
+            spans,
+            list: Vec::new(),
+        }
+    }
+
+    /// The node behind an organ number.
+    #[must_use]
+    pub fn get(&self, organ: OrganId) -> Option<Organ> {
+        self.list.get(organ.0 as usize).copied()
+    }
+
+    /// Name of the organ's type.
+    #[must_use]
+    pub fn type_name(&self, organ: OrganId) -> Option<&str> {
+        Some(&self.types[self.get(organ)?.type_id].name)
+    }
+
+    /// Where the organ's module is declared; `None` for built-in types.
+    #[must_use]
+    pub fn declared_at(&self, organ: OrganId) -> Option<Span> {
+        let ty = self.get(organ)?.type_id;
+        self.spans.get(usize::from(ty.0)).copied().flatten()
+    }
+
+    /// All organs, in the order of their numbers.
+    #[must_use]
+    pub fn list(&self) -> &[Organ] {
+        &self.list
+    }
+
+    /// The number of a node: that of the last organ, or a new one.
+    pub(super) fn number(&mut self, node: NodeId, type_id: TypeId) -> OrganId {
+        if self.list.last().is_none_or(|last| last.node != node) {
+            self.list.push(Organ { node, type_id });
+        }
+        // Beyond four thousand million organs all share the last number; memory ends long before.
+        OrganId(u32::try_from(self.list.len() - 1).unwrap_or(u32::MAX))
+    }
+}

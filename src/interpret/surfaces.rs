@@ -1,0 +1,138 @@
+//! How what a node draws looks: shader, colour, lamp.
+
+use super::appearance::{Appearance, Lamp, LampKind, Surface};
+use super::failure::{self, Failure};
+use super::lamps::{Shining, emission, is_possible, shine};
+use super::shapes::{FIELDS, parallelogram_area};
+use super::source::Source;
+use super::walk::{Painter, Place};
+use crate::color::Rgb;
+use crate::geometry::Shape;
+use crate::graph::NodeId;
+use crate::scene::description::MaterialId;
+use crate::turtle::TurtleState;
+use crate::turtle::effect::{Effect, Primitive};
+use crate::turtle::reading::shoot_color;
+use glam::DAffine3;
+
+const IMPOSSIBLE_LAMP: &str =
+    "has a lamp whose power or colour is negative or no number; it does not shine";
+
+impl<S: Source> Painter<'_, S> {
+    /// The material a node's shape is drawn with: its shader, else a shoot's colour, else grey.
+    pub(super) fn material_of(
+        &mut self,
+        node: NodeId,
+        does: Effect,
+        state: &TurtleState,
+        shape: &Shape,
+        to_group: &DAffine3,
+    ) -> MaterialId {
+        let graph = self.source.graph();
+        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
+        let surface = shader.and_then(Appearance::surface);
+        let lamp = match does {
+            Effect::Draw(Primitive::Parallelogram) => {
+                let light = graph.peek_object(node, FIELDS.area_light).ok().flatten();
+                light.and_then(Appearance::lamp)
+            }
+            _ => None,
+        };
+        let index = shoot_color(graph, node, state);
+        if let Some(lamp) = lamp {
+            return self.shining_material(node, &lamp, surface, shape, to_group);
+        }
+        let Some(surface) = surface else {
+            return match index {
+                Some(index) => self.materials.ega(index),
+                None => self.materials.grey(),
+            };
+        };
+        let (material, problem) = self.materials.of(&surface, Rgb::BLACK);
+        if let Some(problem) = problem {
+            self.warn(node, "impossible-shader", &format!("has {problem}"));
+        }
+        material
+    }
+
+    /// The material of a parallelogram with a lamp of its own. A lamp without a shader shines white.
+    fn shining_material(
+        &mut self,
+        node: NodeId,
+        lamp: &Lamp,
+        surface: Option<Surface>,
+        shape: &Shape,
+        to_group: &DAffine3,
+    ) -> MaterialId {
+        self.canvas.is_bound = true;
+        match lamp.kind {
+            LampKind::Area { exponent } if exponent != 1.0 => self.warn(
+                node,
+                "area-light-exponent",
+                "has an area light with an exponent other than 1; it shines like a matt surface",
+            ),
+            LampKind::Area { .. } => {}
+            _ => self.warn(
+                node,
+                "area-light-kind",
+                "carries a lamp that is no `AreaLight`; it shines like one",
+            ),
+        }
+        let filter = surface.map_or(Rgb::WHITE, |s| Rgb::from_array(s.reflectance));
+        let surface = surface.unwrap_or(Surface::opaque([0.5; 3]));
+        let radiance = if is_possible(lamp) {
+            emission(
+                lamp,
+                filter,
+                surface.alpha,
+                parallelogram_area(shape, to_group),
+            )
+        } else {
+            self.warn(node, "impossible-lamp", IMPOSSIBLE_LAMP);
+            Rgb::BLACK
+        };
+        let (material, problem) = self.materials.of(&surface, radiance);
+        if let Some(problem) = problem {
+            self.warn(node, "impossible-shader", &format!("has {problem}"));
+        }
+        material
+    }
+
+    /// Adds the source that a light node carries.
+    pub(super) fn draw_light_node(
+        &mut self,
+        node: NodeId,
+        state: &TurtleState,
+    ) -> Result<(), Failure> {
+        let graph = self.source.graph();
+        let light = graph.peek_object(node, FIELDS.light).ok().flatten();
+        let Some(lamp) = light.and_then(Appearance::lamp) else {
+            return Ok(());
+        };
+        if !is_possible(&lamp) {
+            self.warn(node, "impossible-lamp", IMPOSSIBLE_LAMP);
+            return Ok(());
+        }
+        if !state.transform.is_finite() {
+            let place = Place::default();
+            return Err(failure::not_finite(
+                &self.name(node, place),
+                self.span(node, place),
+            ));
+        }
+        match shine(&lamp, state) {
+            Shining::Dark => {}
+            Shining::Source(light) => self.canvas.about.lights.push(light),
+            Shining::Sky(radiance) => {
+                self.canvas.is_bound = true;
+                self.sky += radiance;
+            }
+            Shining::NoSurface => self.warn(
+                node,
+                "area-light-without-area",
+                "carries an `AreaLight`, which needs a `Parallelogram` to shine from",
+            ),
+        }
+        Ok(())
+    }
+}

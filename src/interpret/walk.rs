@@ -1,0 +1,363 @@
+//! The turtle's way through the graph.
+
+use super::body::Prototypes;
+use super::canvas::{About, Canvas};
+use super::failure::{self, Failure};
+use super::instance::Instances;
+use super::materials::Materials;
+use super::organs::Organs;
+use super::shapes::{is_finite, shape_of};
+use super::source::{Body, Source};
+use super::{Interpretation, Limits, Summary};
+use crate::color::Rgb;
+use crate::diag::{Diagnostics, Severity, Span};
+use crate::graph::{EdgeBits, NodeId, TypeId};
+use crate::light::{Environment, Sky};
+use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape, SceneDescription};
+use crate::turtle::effect::{Effect, Primitive};
+use crate::turtle::pose::{apply_own_transform, follow};
+use crate::turtle::reading::{action, effect};
+use crate::turtle::{Poses, TurtleState};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeSet;
+
+/// Where in the model the turtle draws.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    /// The organ all belongs to, inside bodies.
+    pub(super) owner: Option<OrganId>,
+    /// How many bodies stand round it.
+    pub(super) depth: usize,
+}
+
+/// Draws a model.
+pub(super) struct Painter<'s, S: Source> {
+    pub(super) source: &'s mut S,
+    pub(super) limits: Limits,
+    pub(super) canvas: Canvas,
+    pub(super) groups: Vec<Group>,
+    /// What is known of each of `groups`.
+    pub(super) about: Vec<About>,
+    pub(super) poses: Poses,
+    pub(super) prototypes: Prototypes,
+    pub(super) instances: Instances,
+    pub(super) body_nodes: u64,
+    bodies: Vec<Option<Body>>,
+    pub(super) materials: Materials,
+    pub(super) sky: Rgb,
+    organs: Organs,
+    memory: u64,
+    warnings: Diagnostics,
+    /// Warnings given already, by slug and type.
+    warned: BTreeSet<(&'static str, TypeId)>,
+}
+
+impl<'s, S: Source> Painter<'s, S> {
+    pub(super) fn new(source: &'s mut S, limits: Limits) -> Self {
+        let types = source.graph().types().clone();
+        let bodies = types.iter().map(|(ty, _)| source.body(ty)).collect();
+        let spans = types.iter().map(|(ty, _)| source.declared_at(ty)).collect();
+        Self {
+            source,
+            limits,
+            canvas: Canvas::default(),
+            groups: Vec::new(),
+            about: Vec::new(),
+            poses: Poses::default(),
+            prototypes: Prototypes::default(),
+            instances: Instances::default(),
+            body_nodes: 0,
+            bodies,
+            materials: Materials::default(),
+            organs: Organs::new(types, spans),
+            memory: 0,
+            sky: Rgb::BLACK,
+            warnings: Diagnostics::default(),
+            warned: BTreeSet::new(),
+        }
+    }
+
+    /// Draws all that hangs on the root.
+    pub(super) fn draw_world(&mut self) -> Result<(), Failure> {
+        let root = self.source.graph().root();
+        self.draw_below(root, TurtleState::default(), 0)
+    }
+
+    pub(super) fn finish(mut self) -> Interpretation {
+        let canvas = std::mem::take(&mut self.canvas);
+        let lights = canvas.about.lights.clone();
+        let summary = Summary {
+            has_light: canvas.about.shines || !lights.is_empty() || !self.sky.is_black(),
+            has_plane: canvas.about.has_plane,
+            bounds: canvas.about.bounds,
+        };
+        let root = self.add_group(canvas);
+        let environment = Environment {
+            sky: if self.sky.is_black() {
+                Sky::None
+            } else {
+                Sky::Uniform(self.sky)
+            },
+            sun: None,
+        };
+        Interpretation {
+            scene: SceneDescription {
+                materials: self.materials.into_list(),
+                groups: self.groups,
+                root: Some(root),
+                lights,
+                environment,
+            },
+            organs: self.organs,
+            summary,
+            warnings: self.warnings,
+        }
+    }
+
+    pub(super) fn add_group(&mut self, canvas: Canvas) -> GroupId {
+        let id = GroupId(u32::try_from(self.groups.len()).unwrap_or(u32::MAX));
+        self.groups.push(canvas.group);
+        self.about.push(canvas.about);
+        id
+    }
+
+    /// Draws all that hangs on a node, whose children start from `state`; `depth` bodies stand round it.
+    ///
+    /// Chains of any length: only forks are remembered. The children of an open fork lie on `pending`, the next one last.
+    pub(super) fn draw_below(
+        &mut self,
+        start: NodeId,
+        state: TurtleState,
+        depth: usize,
+    ) -> Result<(), Failure> {
+        let place = Place { owner: None, depth };
+        let mut pending: Vec<(NodeId, EdgeBits)> = Vec::new();
+        let mut forks: Vec<(usize, TurtleState)> = Vec::new();
+        let (mut node, mut state) = (start, state);
+        loop {
+            let floor = pending.len();
+            self.push_children(node, &mut pending);
+            let n_children = pending.len() - floor;
+            if n_children > 1 {
+                forks.push((floor, state));
+            }
+            let Some((child, bits)) = pending.pop() else {
+                return Ok(());
+            };
+            // An only child goes on from where its parent ended, all others from their fork.
+            if n_children != 1
+                && let Some(&(floor, at_fork)) = forks.last()
+            {
+                state = at_fork;
+                if pending.len() == floor {
+                    forks.pop();
+                }
+            }
+            follow(&mut state, bits);
+            self.draw_node(child, &mut state, place)?;
+            node = child;
+        }
+    }
+
+    /// Appends the nodes that inherit a node's frame, the first one last.
+    fn push_children(&self, node: NodeId, pending: &mut Vec<(NodeId, EdgeBits)>) {
+        let graph = self.source.graph();
+        let carries = EdgeBits::SUCCESSOR.union(EdgeBits::BRANCH);
+        let floor = pending.len();
+        pending.extend(graph.out_edges(node).filter(|(child, bits)| {
+            let inherits = || {
+                graph
+                    .predecessor(*child)
+                    .is_some_and(|(from, _)| from == node)
+            };
+            bits.intersects(carries) && inherits()
+        }));
+        pending[floor..].reverse();
+    }
+
+    /// Draws one node and turns `state` into the one its children start from.
+    pub(super) fn draw_node(
+        &mut self,
+        node: NodeId,
+        state: &mut TurtleState,
+        place: Place,
+    ) -> Result<(), Failure> {
+        let graph = self.source.graph();
+        let does = effect(graph, node);
+        apply_own_transform(graph, node, state);
+        match does {
+            Effect::Step { is_shoot: true, .. } => self.draw_shape(node, does, state, place)?,
+            Effect::Draw(Primitive::Light) => self.draw_light_node(node, state)?,
+            Effect::Draw(_) => self.draw_shape(node, does, state, place)?,
+            Effect::Instance => self.draw_instance(node, state, place)?,
+            _ => self.canvas.is_bound |= depends_on_world(does),
+        }
+        let graph = self.source.graph();
+        let poses = &mut self.poses;
+        let moves = action(graph, node, &mut |to| poses.location(graph, to).ok());
+        state.execute(&moves);
+        let Some(body) = self.body_of(node) else {
+            return Ok(());
+        };
+        self.draw_body(node, body, state, place)
+    }
+
+    fn body_of(&self, node: NodeId) -> Option<Body> {
+        let ty = self.source.graph().type_of(node).ok()?;
+        self.bodies.get(usize::from(ty.0)).copied().flatten()
+    }
+
+    fn draw_shape(
+        &mut self,
+        node: NodeId,
+        does: Effect,
+        state: &TurtleState,
+        place: Place,
+    ) -> Result<(), Failure> {
+        let Some((shape, shift)) = shape_of(self.source.graph(), node, does, state) else {
+            return Ok(());
+        };
+        let mut to_group = state.transform;
+        to_group.translation += to_group.matrix3.z_axis * shift;
+        if !is_finite(&shape) || !to_group.is_finite() {
+            return Err(failure::not_finite(
+                &self.name(node, place),
+                self.span(node, place),
+            ));
+        }
+        if !self.has_extent(node, &to_group) {
+            return Ok(());
+        }
+        let material = self.material_of(node, does, state, &shape, &to_group);
+        let organ = self.organ(node, place);
+        let placed = PlacedShape {
+            shape,
+            to_group,
+            material,
+            organ,
+        };
+        self.push_shape(placed, node, place)
+    }
+
+    /// Adds a shape, if there is room.
+    pub(super) fn push_shape(
+        &mut self,
+        shape: PlacedShape,
+        node: NodeId,
+        place: Place,
+    ) -> Result<(), Failure> {
+        self.charge(size_of::<PlacedShape>(), node, place)?;
+        let shines = self.materials.shines(shape.material);
+        self.canvas.push_shape(shape, shines);
+        Ok(())
+    }
+
+    /// Adds a group that was drawn before, if there is room.
+    pub(super) fn push_instance(
+        &mut self,
+        group: GroupId,
+        to_group: DAffine3,
+        node: NodeId,
+        place: Place,
+    ) -> Result<(), Failure> {
+        if !to_group.is_finite() {
+            return Err(failure::not_finite(
+                &self.name(node, place),
+                self.span(node, place),
+            ));
+        }
+        if !self.has_extent(node, &to_group) {
+            return Ok(());
+        }
+        let organ = self.organ(node, place);
+        self.charge(size_of::<Instance>(), node, place)?;
+        if let Some(about) = self.about.get(group.0 as usize) {
+            self.canvas.push_instance(group, about, to_group, organ);
+        }
+        Ok(())
+    }
+
+    fn charge(&mut self, bytes: usize, node: NodeId, place: Place) -> Result<(), Failure> {
+        self.memory += bytes as u64;
+        if self.memory <= self.limits.memory {
+            return Ok(());
+        }
+        let name = self.name(node, place);
+        Err(failure::too_much(
+            &name,
+            self.limits.memory,
+            self.span(node, place),
+        ))
+    }
+
+    /// Whether a placement leaves anything to see. What is scaled to nothing is skipped, what is squeezed flat is told.
+    pub(super) fn has_extent(&mut self, node: NodeId, placement: &DAffine3) -> bool {
+        let m = &placement.matrix3;
+        let axes = [m.x_axis, m.y_axis, m.z_axis];
+        let n_lost = axes.iter().filter(|axis| **axis == DVec3::ZERO).count();
+        if n_lost > 0 && n_lost < 3 {
+            self.warn(
+                node,
+                "flat-scale",
+                "is scaled to 0 along one axis; it is not drawn",
+            );
+        }
+        n_lost == 0
+    }
+
+    /// The organ that what a node draws belongs to.
+    pub(super) fn organ(&mut self, node: NodeId, place: Place) -> OrganId {
+        match place.owner {
+            Some(owner) => owner,
+            None => {
+                let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
+                self.organs.number(node, ty)
+            }
+        }
+    }
+
+    /// A node in words: its type, and whose body made it.
+    pub(super) fn name(&self, node: NodeId, place: Place) -> String {
+        let graph = self.source.graph();
+        let own = match graph.type_of(node) {
+            Ok(ty) => format!("`{}`", graph.types()[ty].name),
+            Err(_) => "a deleted node".to_owned(),
+        };
+        match place.owner.and_then(|owner| self.organs.type_name(owner)) {
+            Some(owner) if place.depth > 0 => format!("{own} in the body of `{owner}`"),
+            _ => own,
+        }
+    }
+
+    /// Where the module of a node, or the one whose body made it, is declared.
+    pub(super) fn span(&self, node: NodeId, place: Place) -> Option<Span> {
+        let ty = self.source.graph().type_of(node).ok()?;
+        let own = self.source.declared_at(ty);
+        own.or_else(|| self.organs.declared_at(place.owner?))
+    }
+
+    /// Notes something about a node, once for each type.
+    pub(super) fn warn(&mut self, node: NodeId, slug: &'static str, what: &str) {
+        let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
+        if self.warned.insert((slug, ty)) {
+            let place = Place::default();
+            let message = format!("{} {what}", self.name(node, place));
+            let span = self.span(node, place);
+            self.warnings
+                .push(failure::diagnostic(Severity::Warning, slug, message, span));
+        }
+    }
+}
+
+/// Whether what a node does depends on how the turtle stands in the world.
+const fn depends_on_world(does: Effect) -> bool {
+    matches!(
+        does,
+        Effect::SetInclination
+            | Effect::AdjustUp
+            | Effect::HeadDown
+            | Effect::Gravitropism
+            | Effect::RegisterGravitropism
+            | Effect::Tropism(_)
+    )
+}
