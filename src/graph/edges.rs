@@ -83,6 +83,8 @@ pub(super) struct EdgeArena {
     pub(super) edges: Vec<Edge>,
     free: u32,
     n_free: usize,
+    /// Number of nodes with two or more incoming edges.
+    n_shared: usize,
 }
 
 impl Default for EdgeArena {
@@ -91,6 +93,7 @@ impl Default for EdgeArena {
             edges: vec![],
             free: NIL,
             n_free: 0,
+            n_shared: 0,
         }
     }
 }
@@ -141,6 +144,7 @@ impl EdgeArena {
             self.edges[at as usize].previous_in = at;
         } else {
             let last = std::mem::replace(&mut self.edges[*first as usize].previous_in, at);
+            self.n_shared += usize::from(last == *first);
             self.edges[last as usize].next_in = at;
             self.edges[at as usize].previous_in = last;
         }
@@ -179,6 +183,8 @@ impl EdgeArena {
         } else {
             self.edges[previous_in as usize].next_in = next_in;
         }
+        let is_single = *first != NIL && self.edges[*first as usize].next_in == NIL;
+        self.n_shared -= usize::from(is_single);
     }
 }
 
@@ -192,7 +198,7 @@ impl<O: Payload> Graph<O> {
         if bits == EdgeBits::NONE {
             return Ok(());
         }
-        self.touch(true);
+        self.touch(self.nodes[source].flags & INSERTED != 0);
         if let Some(at) = self.find_edge(source, target) {
             let edge = &mut self.edges.edges[at as usize];
             edge.bits = edge.bits.union(bits);
@@ -258,6 +264,12 @@ impl<O: Payload> Graph<O> {
         let carries = EdgeBits::SUCCESSOR.union(EdgeBits::BRANCH);
         self.in_edges(node)
             .find(|(_, bits)| bits.intersects(carries))
+    }
+
+    /// Whether every node has at most one parent and the root none, so that no walk along the edges meets a node twice.
+    /// (Rings that hang on nothing are gone by then, see [`Graph::end_of_step`].)
+    pub fn is_forest(&self) -> bool {
+        self.edges.n_shared == 0 && self.nodes[self.root().index()].first_in == NIL
     }
 
     /// Number of edges.

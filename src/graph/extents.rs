@@ -1,4 +1,7 @@
-//! Extents: all nodes of a type, in the order in which they became part of the graph.
+//! Extents: all nodes of a type, those inserted last first.
+//!
+//! That is GroIMP's order (golden model 29): the nodes of the newest step come before older ones. A step inserts its nodes
+//! in reverse, so that among themselves they stand in the order of the rules and their right-hand sides.
 
 use super::arena::NIL;
 use super::store::{Graph, Header};
@@ -51,6 +54,7 @@ impl Extents {
         let places = &self.by_type[usize::from(ty.0)].places;
         places
             .iter()
+            .rev()
             .filter(|&&index| index != NIL)
             .map(|&index| index as usize)
     }
@@ -73,7 +77,7 @@ impl Extents {
 }
 
 impl<O: Payload> Graph<O> {
-    /// The nodes of a type and of those that extend it: types in table order, nodes of each in order of insertion.
+    /// The nodes of a type and of those that extend it: types in table order, of each the nodes inserted last first.
     pub fn extent(&self, ty: TypeId) -> impl Iterator<Item = NodeId> {
         let types = self.types()[ty].descendants().iter();
         types

@@ -53,6 +53,9 @@ pub(super) const REACHED: u8 = 16;
 /// Waits to be looked at by the sweep at the end of the step.
 pub(super) const CANDIDATE: u8 = 32;
 
+/// The queue of the running step knows the node.
+const QUEUED: u8 = 64;
+
 /// A rare attribute.
 #[derive(Clone, Debug)]
 pub(super) enum SideValue<O> {
@@ -181,12 +184,12 @@ impl<O: Payload> Graph<O> {
         NodeId::new(index, generation).ok_or(GraphError::TooManyNodes { limit: self.limit })
     }
 
-    /// Makes a node part of its extent, at the end; nothing happens if it is already.
+    /// Makes a node part of its extent, as the one to be found first; nothing happens if it is already.
     pub fn insert(&mut self, node: NodeId) -> Result<(), GraphError> {
         let index = self.live_index(node)?;
         let header = &mut self.nodes[index];
         if header.flags & INSERTED == 0 {
-            header.flags |= INSERTED;
+            header.flags = header.flags & !QUEUED | INSERTED;
             header.extent_place = self.extents.push(header.type_id, index as u32);
             self.touch(true);
             self.nominate(index);
@@ -220,7 +223,30 @@ impl<O: Payload> Graph<O> {
         header.flags &= CANDIDATE;
         header.generation = header.generation.wrapping_add(1);
         self.free_nodes.push(index as u32);
-        self.touch(true);
+        self.touch(flags & INSERTED != 0);
+    }
+
+    /// Frees a floating node; nodes of the graph stay.
+    pub fn discard(&mut self, node: NodeId) {
+        if self.exists(node) && !self.is_inserted(node) {
+            self.remove(node);
+        }
+    }
+
+    /// Notes that the queue knows a floating node; false if it is in the graph or was noted before.
+    pub(crate) fn mark_queued(&mut self, node: NodeId) -> bool {
+        let Ok(index) = self.live_index(node) else {
+            return false;
+        };
+        let flags = &mut self.nodes[index].flags;
+        let is_first = *flags & (INSERTED | QUEUED) == 0;
+        *flags |= if is_first { QUEUED } else { 0 };
+        is_first
+    }
+
+    pub(crate) fn is_queued(&self, node: NodeId) -> bool {
+        self.live_index(node)
+            .is_ok_and(|i| self.nodes[i].flags & QUEUED != 0)
     }
 
     fn release_fields(&mut self, index: usize) {
@@ -377,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn extents_keep_the_order_of_insertion() {
+    fn extents_keep_their_order() {
         let mut graph = graph("S A(1) [B(2) A(3)] A(4) A(5) A(6)");
         let ty = type_named(&graph, "A");
         let values = |g: &Graph<()>| g.extent(ty).map(|n| g.get_i32(n, V)).collect::<Vec<_>>();

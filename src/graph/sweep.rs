@@ -11,7 +11,7 @@ impl<O: Payload> Graph<O> {
     /// Notes that a node may have become unreachable.
     pub(super) fn nominate(&mut self, index: usize) {
         let flags = &mut self.nodes[index].flags;
-        if *flags & CANDIDATE == 0 {
+        if *flags & (CANDIDATE | INSERTED) == INSERTED {
             *flags |= CANDIDATE;
             self.candidates.push(index as u32);
         }

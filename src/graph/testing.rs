@@ -35,6 +35,7 @@ pub(crate) fn grow(graph: &mut Graph<()>, text: &str) -> Result<(), GraphError> 
     let mut previous = graph.root();
     let mut stack = vec![];
     let mut bits = EdgeBits::SUCCESSOR;
+    let mut born = vec![];
     for token in tokens(text) {
         match token {
             "[" => {
@@ -47,13 +48,15 @@ pub(crate) fn grow(graph: &mut Graph<()>, text: &str) -> Result<(), GraphError> 
             }
             name => {
                 let node = new_node(graph, name)?;
-                graph.insert(node)?;
+                born.push(node);
                 graph.add_edge(previous, node, bits)?;
                 (previous, bits) = (node, EdgeBits::SUCCESSOR);
             }
         }
     }
-    Ok(())
+    born.into_iter()
+        .rev()
+        .try_for_each(|node| graph.insert(node))
 }
 
 /// A floating node from a text such as `A(7)`.
@@ -98,9 +101,4 @@ pub(crate) fn tokens(text: &str) -> Vec<&str> {
         }
     }
     found
-}
-
-/// What hangs below the `S` nodes, as the golden models print it: `SA1[B2]C3`.
-pub(crate) fn text(graph: &Graph<()>) -> String {
-    graph.string_text().replace(['(', ')'], "").replace("'", "")
 }

@@ -1,0 +1,289 @@
+//! Finding the matches of a pattern.
+
+use super::path::{Open, Path, Visit, Visited};
+use super::plan::{Plan, Step};
+use crate::graph::pattern::{Candidate, Pattern, PatternArg};
+use crate::graph::{FieldId, Graph, GraphError, NodeId, Payload, TypeId};
+
+/// Whether a search goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// To the next match.
+    Continue,
+    /// No more matches are wanted.
+    Stop,
+}
+
+/// What a search needs of the language. `E` is an expression.
+///
+/// Any of the callbacks may change the graph, even apply a step: candidates that vanished are skipped.
+pub trait MatchEnv<E> {
+    /// What object fields hold.
+    type Object: Payload;
+    /// What can go wrong in an expression.
+    type Error: From<GraphError>;
+
+    /// The graph as it is now.
+    fn graph(&self) -> &Graph<Self::Object>;
+
+    /// Buffers that searches share.
+    fn scratch(&mut self) -> &mut ScratchPool;
+
+    /// Stores a matched node in a local variable.
+    fn bind_node(&mut self, slot: u16, node: NodeId);
+
+    /// Stores a field of a matched node in a local variable.
+    fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), Self::Error>;
+
+    /// Whether a field has the value of an expression, compared in the field's type.
+    fn field_equals(
+        &mut self,
+        node: NodeId,
+        field: FieldId,
+        value: &E,
+    ) -> Result<bool, Self::Error>;
+
+    /// The value of a condition.
+    fn condition(&mut self, condition: &E) -> Result<bool, Self::Error>;
+
+    /// The node an expression gives; `None` for null.
+    fn node_value(&mut self, value: &E) -> Result<Option<NodeId>, Self::Error>;
+}
+
+/// What is done with a match: gets the graph's node for each pattern node.
+pub type Found<'f, M, E> = dyn FnMut(&mut M, &[NodeId]) -> Result<Flow, E> + 'f;
+
+/// Buffers for searches, kept from one search to the next. Searches inside searches take one each.
+#[derive(Debug, Default)]
+pub struct ScratchPool {
+    spare: Vec<Scratch>,
+}
+
+#[derive(Debug, Default)]
+struct Scratch {
+    /// What each pattern node has found.
+    nodes: Vec<NodeId>,
+    /// Which pattern nodes have found anything.
+    is_bound: Vec<bool>,
+    /// Candidates of all steps that are under way, those of the innermost on top.
+    open: Vec<Open>,
+}
+
+/// Calls `found` for each match of a pattern, with the graph's node for each pattern node; labels and parameters stand in
+/// their local variables then.
+///
+/// Matches come in the order of the first node's extent as it is when the search begins, then in order of edges. With
+/// `excludes_consumed` (rules) a node that an earlier rule of the step has consumed matches only as context. Two pattern
+/// nodes never match the same node, except over a closure that may have length 0.
+pub fn search<E, M: MatchEnv<E>>(
+    pattern: &Pattern<E>,
+    plan: &Plan,
+    excludes_consumed: bool,
+    env: &mut M,
+    found: &mut Found<'_, M, M::Error>,
+) -> Result<(), M::Error> {
+    for &i in &plan.once {
+        if !env.condition(&pattern.conditions[i].expr)? {
+            return Ok(());
+        }
+    }
+    let mut scratch = env.scratch().spare.pop().unwrap_or_default();
+    scratch.nodes.clear();
+    scratch
+        .nodes
+        .resize(pattern.nodes.len(), env.graph().root());
+    scratch.is_bound.clear();
+    scratch.is_bound.resize(pattern.nodes.len(), false);
+    scratch.open.clear();
+    let mut search = Search {
+        pattern,
+        plan,
+        excludes_consumed,
+        env,
+        found,
+        scratch,
+    };
+    let result = search.step(0);
+    let scratch = search.scratch;
+    env.scratch().spare.push(scratch);
+    result.map(|_| ())
+}
+
+struct Search<'a, E, M: MatchEnv<E>> {
+    pattern: &'a Pattern<E>,
+    plan: &'a Plan,
+    excludes_consumed: bool,
+    env: &'a mut M,
+    found: &'a mut Found<'a, M, M::Error>,
+    scratch: Scratch,
+}
+
+impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
+    fn step(&mut self, at: usize) -> Result<Flow, M::Error> {
+        let Some(&step) = self.plan.steps.get(at) else {
+            return (self.found)(self.env, &self.scratch.nodes);
+        };
+        match step {
+            Step::Start(node) => self.start(node, at),
+            Step::Follow { edge, is_reversed } => self.follow(edge, is_reversed, at),
+            Step::Check(edge) => {
+                if self.check(edge) {
+                    self.step(at + 1)
+                } else {
+                    Ok(Flow::Continue)
+                }
+            }
+            Step::Condition(i) => {
+                let holds = self.env.condition(&self.pattern.conditions[i].expr)?;
+                if holds {
+                    self.step(at + 1)
+                } else {
+                    Ok(Flow::Continue)
+                }
+            }
+        }
+    }
+
+    fn start(&mut self, node: usize, at: usize) -> Result<Flow, M::Error> {
+        let base = self.scratch.open.len();
+        match &self.pattern.nodes[node].what {
+            Candidate::Root => {
+                let root = self.env.graph().root();
+                return self.try_node(node, root, at);
+            }
+            Candidate::Value(value) => {
+                return match self.env.node_value(value)? {
+                    Some(found) if self.env.graph().exists(found) => self.try_node(node, found, at),
+                    Some(_) | None => Ok(Flow::Continue),
+                };
+            }
+            Candidate::Type(ty) => self.open_extent(*ty),
+            // All types extend the first one.
+            Candidate::Any | Candidate::Same(_) => self.open_extent(TypeId(0)),
+        }
+        let end = self.scratch.open.len();
+        for i in base..end {
+            let candidate = self.scratch.open[i].0;
+            if self.try_node(node, candidate, at)? == Flow::Stop {
+                return Ok(Flow::Stop);
+            }
+        }
+        self.scratch.open.truncate(base);
+        Ok(Flow::Continue)
+    }
+
+    fn open_extent(&mut self, ty: TypeId) {
+        self.scratch
+            .open
+            .extend(self.env.graph().extent(ty).map(|node| (node, 0)));
+    }
+
+    fn follow(&mut self, edge: usize, is_reversed: bool, at: usize) -> Result<Flow, M::Error> {
+        let (path, from, to) = self.path(edge, is_reversed);
+        let from = self.scratch.nodes[from];
+        let base = self.scratch.open.len();
+        let mut visited = Visited::new(self.env.graph(), &path);
+        path.begin(self.env.graph(), from, &mut self.scratch.open);
+        while self.scratch.open.len() > base {
+            let Some(open) = self.scratch.open.pop() else {
+                break;
+            };
+            if !visited.is_new(open.0) {
+                continue;
+            }
+            let Visit { is_found, goes_on } = path.visit(self.env.graph(), open);
+            if is_found && self.try_node(to, open.0, at)? == Flow::Stop {
+                return Ok(Flow::Stop);
+            }
+            if goes_on {
+                path.go_on(self.env.graph(), open, &mut self.scratch.open);
+            }
+        }
+        Ok(Flow::Continue)
+    }
+
+    /// Looks from the far end, which is quicker in trees: every node has one parent.
+    fn check(&mut self, edge: usize) -> bool {
+        let (path, from, to) = self.path(edge, true);
+        let (from, to) = (self.scratch.nodes[from], self.scratch.nodes[to]);
+        path.reaches(self.env.graph(), from, to, &mut self.scratch.open)
+    }
+
+    /// The path along a pattern edge, with the pattern nodes it leads from and to.
+    fn path(&self, edge: usize, is_reversed: bool) -> (Path<'a>, usize, usize) {
+        let pattern = self.pattern;
+        let edge = &pattern.edges[edge];
+        let types = &self.plan.types;
+        let path = Path::new(edge, is_reversed, types[edge.from], types[edge.to]);
+        let (left, right) = (self.plan.meant[edge.from], self.plan.meant[edge.to]);
+        if is_reversed {
+            (path, right, left)
+        } else {
+            (path, left, right)
+        }
+    }
+
+    /// Tries a node of the graph for a pattern node, then the rest of the plan.
+    fn try_node(&mut self, node: usize, found: NodeId, at: usize) -> Result<Flow, M::Error> {
+        if !self.fits(node, found) {
+            return Ok(Flow::Continue);
+        }
+        self.scratch.nodes[node] = found;
+        self.scratch.is_bound[node] = true;
+        let flow = if self.bind(node, found)? {
+            self.step(at + 1)?
+        } else {
+            Flow::Continue
+        };
+        self.scratch.is_bound[node] = false;
+        Ok(flow)
+    }
+
+    fn fits(&self, node: usize, found: NodeId) -> bool {
+        let graph = self.env.graph();
+        let has_type = match self.plan.types[node] {
+            Some(ty) => graph.is_a(found, ty),
+            None => graph.exists(found),
+        };
+        if !has_type {
+            return false;
+        }
+        let is_context = |i: usize| self.pattern.nodes[i].is_context;
+        let is_consuming =
+            (node..self.pattern.nodes.len()).any(|i| self.plan.meant[i] == node && !is_context(i));
+        if self.excludes_consumed && is_consuming && graph.is_consumed(found) {
+            return false;
+        }
+        let bound = (0..self.scratch.nodes.len()).filter(|&i| self.scratch.is_bound[i]);
+        let mut equal = bound.filter(|&i| self.scratch.nodes[i] == found);
+        equal.all(|other| {
+            let pair =
+                |&(a, b): &(usize, usize)| (a, b) == (node, other) || (b, a) == (node, other);
+            self.plan.may_coincide.iter().any(pair)
+        })
+    }
+
+    /// Fills local variables and compares parameters, for all pattern nodes that mean `node`.
+    fn bind(&mut self, node: usize, found: NodeId) -> Result<bool, M::Error> {
+        for i in node..self.pattern.nodes.len() {
+            if self.plan.meant[i] != node {
+                continue;
+            }
+            self.scratch.nodes[i] = found;
+            if let Some(slot) = self.pattern.nodes[i].slot {
+                self.env.bind_node(slot, found);
+            }
+            for arg in &self.pattern.nodes[i].args {
+                match arg {
+                    PatternArg::Bind(field, slot) => self.env.bind_field(*slot, found, *field)?,
+                    PatternArg::Equal(field, value) => {
+                        if !self.env.field_equals(found, *field, value)? {
+                            return Ok(false);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(true)
+    }
+}

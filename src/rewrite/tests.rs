@@ -1,0 +1,690 @@
+//! GroIMP's own results (golden models 10, 11, 13, 14, 16, 17, 19, 20, 25, 29, 49) on rules written as text.
+//!
+//! A tiny stand-in for the language: letters with one int, `x*10+y` as expressions, `(x > 4)` as conditions.
+
+use super::*;
+use crate::check::model::Arrow;
+use crate::diag::Span;
+use crate::graph::pattern::{
+    Candidate, Condition, EdgeKind, EdgeWay, Pattern, PatternArg, PatternEdge, PatternNode,
+};
+use crate::graph::testing::{self, V, graph, new_node, split};
+use crate::graph::{FieldId, Graph, GraphError, NodeId};
+
+/// An expression over the variables of a rule.
+type Expr = String;
+
+#[derive(Clone, Copy, Debug)]
+enum Variable {
+    Int(i32),
+    Node(NodeId),
+}
+
+struct World {
+    graph: Graph<()>,
+    queue: Queue<()>,
+    mode: Mode,
+    pool: ScratchPool,
+    names: Vec<String>,
+    values: Vec<Option<Variable>>,
+}
+
+impl World {
+    fn new(start: &str) -> Self {
+        Self {
+            graph: graph(start),
+            queue: Queue::default(),
+            mode: Mode::default(),
+            pool: ScratchPool::default(),
+            names: vec![],
+            values: vec![],
+        }
+    }
+
+    fn variable(&self, name: &str) -> Option<Variable> {
+        let slot = self.names.iter().position(|n| n == name)?;
+        self.values[slot]
+    }
+
+    fn slot(&mut self, name: &str) -> u16 {
+        let found = self.names.iter().position(|n| n == name);
+        found.unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.values.push(None);
+            self.names.len() - 1
+        }) as u16
+    }
+
+    fn value(&self, expr: &str) -> i32 {
+        let atom = |text: &str| match self.variable(text.trim()) {
+            Some(Variable::Int(value)) => value,
+            Some(Variable::Node(node)) => self.graph.get_i32(node, V).expect("exists"),
+            None => text
+                .trim()
+                .parse()
+                .unwrap_or_else(|_| panic!("value of `{text}`")),
+        };
+        let product = |text: &str| text.split('*').map(atom).product::<i32>();
+        expr.split('+').map(product).sum()
+    }
+
+    fn holds(&self, condition: &str) -> bool {
+        condition.split("&&").all(|part| {
+            let mut words = part.split_whitespace();
+            let mut word = || words.next().unwrap_or_default();
+            let (left, op, right) = (self.value(word()), word(), self.value(word()));
+            match op {
+                ">" => left > right,
+                "<" => left < right,
+                "==" => left == right,
+                other => panic!("operator {other}"),
+            }
+        })
+    }
+
+    /// Applies rules such as `A(x) B ==> C(x)`, one step.
+    fn step(&mut self, rules: &[&str]) -> Result<(), RewriteError> {
+        for rule in rules {
+            self.rule(rule)?;
+        }
+        self.queue.apply(&mut self.graph)
+    }
+
+    fn rule(&mut self, rule: &str) -> Result<(), RewriteError> {
+        let (left, right, arrow) = match rule.split_once("==>>") {
+            Some((left, right)) => (left, right, Arrow::Spo),
+            None => {
+                let (left, right) = rule.split_once("==>").expect("an arrow");
+                (left, right, Arrow::Lindenmayer)
+            }
+        };
+        (self.names, self.values) = (vec![], vec![]);
+        let pattern = self.pattern(left, false);
+        let plan = Plan::new(&pattern);
+        let excludes = self.mode.excludes_consumed;
+        search(&pattern, &plan, excludes, self, &mut |world, matched| {
+            let Self {
+                graph, queue, mode, ..
+            } = world;
+            if queue.admit(graph, *mode, |_| 1) {
+                queue.begin(graph, &pattern, &plan, arrow, matched);
+                world.produce(right)?;
+                world.queue.end(&mut world.graph);
+            }
+            let is_one = world.mode.derivation == Derivation::Sequential;
+            Ok(if is_one { Flow::Stop } else { Flow::Continue })
+        })
+    }
+
+    fn produce(&mut self, right: &str) -> Result<(), RewriteError> {
+        for token in tokens(right) {
+            match token.as_str() {
+                "[" => self.queue.push(),
+                "]" => self.queue.pop(),
+                "," => self.queue.separator(),
+                "+>" => self.queue.edge(EdgeKind::Branch, EdgeWay::Forward),
+                name => {
+                    let (name, arg) = split(name);
+                    let node = match self.variable(name) {
+                        Some(Variable::Node(node)) => node,
+                        _ if name == "^" => self.graph.root(),
+                        _ => {
+                            let arg = arg
+                                .map(|arg| format!("({})", self.value(arg)))
+                                .unwrap_or_default();
+                            new_node(&mut self.graph, &format!("{name}{arg}"))?
+                        }
+                    };
+                    self.queue.node(&mut self.graph, node)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn pattern(&mut self, text: &str, is_query: bool) -> Pattern<Expr> {
+        let mut pattern = Pattern {
+            nodes: vec![],
+            edges: vec![],
+            conditions: vec![],
+            first: None,
+            last: None,
+            span: Span::default(),
+        };
+        let mut previous: Option<usize> = None;
+        let (mut stack, mut is_context) = (vec![], is_query);
+        let mut edge = None;
+        for token in tokens(text) {
+            match token.as_str() {
+                "(*" => is_context = true,
+                "*)" => is_context = false,
+                "," => previous = None,
+                "[" => {
+                    stack.push(previous);
+                    edge = Some(edge_of("+>"));
+                }
+                "]" => previous = stack.pop().expect("balanced"),
+                condition if condition.starts_with('(') && condition.contains(' ') => {
+                    let expr = condition[1..condition.len() - 1].to_owned();
+                    let needs = Some(pattern.nodes.len() - 1);
+                    pattern.conditions.push(Condition { expr, needs });
+                }
+                operator if !operator.starts_with(|c: char| c.is_alphabetic() || c == '^') => {
+                    edge = Some(edge_of(operator));
+                }
+                node => {
+                    let node = self.pattern_node(node, is_context, &pattern);
+                    pattern.nodes.push(node);
+                    let to = pattern.nodes.len() - 1;
+                    let link = edge.take().unwrap_or(edge_of(">"));
+                    if let Some(from) = previous {
+                        pattern.edges.push(PatternEdge { from, to, ..link });
+                    }
+                    if !is_context {
+                        pattern.first = pattern.first.or(Some(to));
+                        if stack.is_empty() {
+                            pattern.last = Some(to);
+                        }
+                    }
+                    previous = Some(to);
+                }
+            }
+        }
+        pattern
+    }
+
+    fn pattern_node(
+        &mut self,
+        text: &str,
+        is_context: bool,
+        pattern: &Pattern<Expr>,
+    ) -> PatternNode<Expr> {
+        let (label, rest) = text
+            .split_once(':')
+            .map_or((None, text), |(l, r)| (Some(l), r));
+        let (name, arg) = split(rest);
+        let slot = label.map(|label| self.slot(label));
+        let earlier = self.names.iter().position(|n| n == name).map(|i| i as u16);
+        let same = pattern
+            .nodes
+            .iter()
+            .position(|n| earlier.is_some() && n.slot == earlier);
+        let what = match same {
+            _ if name == "^" => Candidate::Root,
+            Some(same) => Candidate::Same(same),
+            None => Candidate::Type(testing::type_named(&self.graph, name)),
+        };
+        let arg = arg.map(|arg| match arg.parse::<i32>() {
+            Ok(_) => PatternArg::Equal(V, arg.to_owned()),
+            Err(_) => PatternArg::Bind(V, self.slot(arg)),
+        });
+        PatternNode {
+            what,
+            slot,
+            args: arg.into_iter().collect(),
+            is_context,
+            span: Span::default(),
+        }
+    }
+
+    /// Values of the nodes labelled `b` in all matches, as the golden models print them.
+    fn query(&mut self, text: &str) -> String {
+        (self.names, self.values) = (vec![], vec![]);
+        let pattern = self.pattern(text, true);
+        let plan = Plan::new(&pattern);
+        let mut found = vec![];
+        search::<_, Self>(&pattern, &plan, false, self, &mut |world, _| {
+            found.push(world.value("b").to_string());
+            Ok(Flow::Continue)
+        })
+        .expect("no errors in queries");
+        found.join(" ")
+    }
+
+    /// As the golden models print it: `SA1[B2](C3)(D4)`, what hangs below the S.
+    fn show(&self) -> String {
+        fn chain(graph: &Graph<()>, node: NodeId) -> String {
+            use crate::graph::EdgeBits;
+            let ty = graph.type_of(node).expect("exists");
+            let mut text = graph.types()[ty].name.to_string();
+            if !graph.types()[ty].fields.is_empty() {
+                text += &graph.get_i32(node, V).expect("exists").to_string();
+            }
+            let children = |bits: EdgeBits| {
+                let found = graph
+                    .out_edges(node)
+                    .filter(move |(_, b)| b.intersects(bits));
+                found
+                    .map(|(child, _)| chain(graph, child))
+                    .collect::<Vec<_>>()
+            };
+            for branch in children(EdgeBits::BRANCH) {
+                text += &format!("[{branch}]");
+            }
+            let successors = children(EdgeBits::SUCCESSOR);
+            for successor in &successors {
+                let wrapped = format!("({successor})");
+                text += if successors.len() > 1 {
+                    &wrapped
+                } else {
+                    successor
+                };
+            }
+            text
+        }
+        let s = testing::type_named(&self.graph, "S");
+        self.graph
+            .extent(s)
+            .map(|node| chain(&self.graph, node))
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+impl MatchEnv<Expr> for World {
+    type Object = ();
+    type Error = RewriteError;
+
+    fn graph(&self) -> &Graph<()> {
+        &self.graph
+    }
+
+    fn scratch(&mut self) -> &mut ScratchPool {
+        &mut self.pool
+    }
+
+    fn bind_node(&mut self, slot: u16, node: NodeId) {
+        self.values[usize::from(slot)] = Some(Variable::Node(node));
+    }
+
+    fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), RewriteError> {
+        let value = self.graph.get_i32(node, field)?;
+        self.values[usize::from(slot)] = Some(Variable::Int(value));
+        Ok(())
+    }
+
+    fn field_equals(
+        &mut self,
+        node: NodeId,
+        field: FieldId,
+        value: &Expr,
+    ) -> Result<bool, RewriteError> {
+        Ok(self.graph.get_i32(node, field)? == self.value(value))
+    }
+
+    fn condition(&mut self, condition: &Expr) -> Result<bool, RewriteError> {
+        Ok(self.holds(condition))
+    }
+
+    fn node_value(&mut self, _: &Expr) -> Result<Option<NodeId>, RewriteError> {
+        Ok(None)
+    }
+}
+
+/// Splits at blanks that stand in no parentheses; brackets and commas are words.
+fn tokens(text: &str) -> Vec<String> {
+    let mut found = vec![];
+    let (mut word, mut depth) = (String::new(), 0);
+    let spaced = text.replace("(*", " \u{1} ").replace("*)", " \u{2} ");
+    for c in spaced.chars() {
+        depth += i32::from(matches!(c, '(' | '{')) - i32::from(matches!(c, ')' | '}'));
+        if depth == 0 && matches!(c, ' ' | '[' | ']' | ',') {
+            found.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
+            found.extend((c != ' ').then(|| c.to_string()));
+        } else {
+            word.push(c);
+        }
+    }
+    found.extend((!word.is_empty()).then_some(word));
+    found
+        .iter()
+        .map(|t| t.replace('\u{1}', "(*").replace('\u{2}', "*)"))
+        .collect()
+}
+
+fn edge_of(text: &str) -> PatternEdge {
+    let once = (1, Some(1));
+    let plain = |kind, way| PatternEdge {
+        from: 0,
+        to: 0,
+        kind,
+        way,
+        repeat: once,
+    };
+    let closure = |repeat| PatternEdge {
+        repeat,
+        ..plain(EdgeKind::Any, EdgeWay::Forward)
+    };
+    match text {
+        ">" => plain(EdgeKind::Successor, EdgeWay::Forward),
+        "<" => plain(EdgeKind::Successor, EdgeWay::Backward),
+        "---" => plain(EdgeKind::Successor, EdgeWay::Undirected),
+        "+>" => plain(EdgeKind::Branch, EdgeWay::Forward),
+        "<+" => plain(EdgeKind::Branch, EdgeWay::Backward),
+        "-->" => plain(EdgeKind::Any, EdgeWay::Forward),
+        "<--" => plain(EdgeKind::Any, EdgeWay::Backward),
+        "--" => plain(EdgeKind::Any, EdgeWay::Undirected),
+        "-minDescendants->" => plain(EdgeKind::MinDescendants, EdgeWay::Forward),
+        "<-minDescendants-" => plain(EdgeKind::MinDescendants, EdgeWay::Backward),
+        "-ancestor->" => plain(EdgeKind::Ancestor, EdgeWay::Forward),
+        "-descendants->" => plain(EdgeKind::Descendants, EdgeWay::Forward),
+        "(-->)+" => closure((1, None)),
+        "(-->)*" => closure((0, None)),
+        "(-->)?" => closure((0, Some(1))),
+        "(-->){2}" => closure((2, Some(2))),
+        "(-->){1,3}" => closure((1, Some(3))),
+        "(<--)+" => PatternEdge {
+            way: EdgeWay::Backward,
+            ..closure((1, None))
+        },
+        "(>)+" => PatternEdge {
+            kind: EdgeKind::Successor,
+            ..closure((1, None))
+        },
+        other => panic!("edge {other}"),
+    }
+}
+
+/// One step of `rules` (separated by `;`) on `S` and what follows it in `start`.
+#[track_caller]
+fn check(start: &str, rules: &str, expected: &str) {
+    let mut world = World::new(&format!("S {start}"));
+    let rules: Vec<&str> = rules.split(';').filter(|r| !r.trim().is_empty()).collect();
+    world.step(&rules).expect("no errors");
+    assert_eq!(world.show(), expected, "{start} by {rules:?}");
+    assert_eq!(world.graph.validate(), Ok(()));
+}
+
+#[test]
+fn lindenmayer_arrow() {
+    check("A(1) B(2) C(3)", "B(x) ==> D(x)", "SA1D2C3");
+    check("A(1) B(2) C(3)", "B(x) ==> D(x) E(x+1)", "SA1D2E3C3");
+    check("A(1) B(2) C(3)", "B(x) ==> D(x) [E(9)]", "SA1D2[E9]C3");
+    check("A(1) B(2) C(3)", "B(x) ==> [E(9)] D(x)", "SA1[E9]D2C3");
+    check("A(1) B(2) C(3)", "B(x) ==> [D(8)] [E(9)]", "SA1[E9][D8]C3");
+    check(
+        "A(1) B(2) [C(3)] C(4)",
+        "B(x) ==> D(x) E(5)",
+        "SA1D2E5[C3]C4",
+    );
+    check(
+        "A(1) [B(2) C(3)] C(4)",
+        "B(x) ==> D(x) E(5)",
+        "SA1[D2E5C3]C4",
+    );
+    check("A(1) B(2) [C(3)] C(4)", "B ==> ", "SA1[C3]C4");
+    check("A(1) [B(2) C(3)] C(4)", "B ==> ", "SA1(C4)(C3)");
+    check("A(1) B(2)", "B ==> ", "SA1");
+    check("A(1) B(2) C(3)", "A B ==> ", "SC3");
+    check("A(1) B(2) C(3)", "A(x), B(y) ==> D(x) E(y)", "SD1E2C3");
+    check(
+        "A(1) B(2) [C(7)] C(3)",
+        "A(x) B(y) ==> D(x*10+y)",
+        "SD12[C7]C3",
+    );
+    check("A(1) [C(7)] B(2) C(3)", "A(x) B(y) ==> D(x*10+y)", "SD12C3");
+    check("A(1) A(2) A(3) A(4)", "A(x) A(y) ==> B(x*10+y)", "SB12B34");
+}
+
+#[test]
+fn single_push_out_arrow() {
+    check("A(1) B(2) C(3)", "B(x) ==>> D(x)", "SA1");
+    check("A(1) B(2) C(3)", "B(x) ==>> ^ D(x)", "SA1");
+    check("A(1) B(2) C(3) [D(4)] E(5)", "B ==>> ", "SA1");
+    check("A(1) [B(2) C(3)] E(5)", "B ==>> ", "SA1E5");
+    check("A(1) B(2) C(3)", "a:A B ==>> a D(9)", "SA1D9");
+    check("A(1) [C(7)] B(2) C(3)", "a:A B ==>> a D(9)", "SA1[C7]D9");
+    check("A(1) B(2) C(3)", "a:A b:B ==>> a D(9) b", "SA1D9B2C3");
+    check("A(1) B(2) C(3)", "a:A b:B ==>> b a", "SA1");
+    check("A(1) B(2)", "a:A ==>> a [D(9)]", "SA1[D9]B2");
+    check(
+        "A(1) B(2) C(3)",
+        "b:B ==>> b [D(9)] E(8)",
+        "SA1B2[D9](C3)(E8)",
+    );
+    check("A(1) B(2) C(3)", "a:A B c:C ==>> a c", "SA1C3");
+}
+
+#[test]
+fn leading_brackets() {
+    check("A(1) B(2)", "B ==> [D(9)] C(3)", "SA1[D9]C3");
+    check(
+        "A(1) B(2) E(5)",
+        "B ==> [D(9)] [D(8)] C(3)",
+        "SA1[D8][D9]C3E5",
+    );
+    check("A(1) B(2) E(5)", "B ==> [D(9)]", "SA1[D9]E5");
+    check(
+        "A(1) [B(2) E(5)] E(6)",
+        "B ==> [D(9)] C(3)",
+        "SA1[C3E5][D9]E6",
+    );
+    check("B(2) E(5)", "B ==> [D(9)] C(3)", "S[D9]C3E5");
+    check(
+        "A(1) B(2) E(5)",
+        "B ==> C(3) [D(9)] [D(8)]",
+        "SA1C3[D9][D8]E5",
+    );
+    check(
+        "A(1) B(2) E(5)",
+        "B ==> C(3) [D(9) D(8) [D(7)] D(6)]",
+        "SA1C3[D9D8[D7]D6]E5",
+    );
+    check("A(1) B(2) E(5)", "B ==> C(3) [[D(9)]]", "SA1C3[D9]E5");
+    check(
+        "A(1) B(2) E(5)",
+        "B ==> C(3) [[D(9)] D(8)]",
+        "SA1C3[D9][D8]E5",
+    );
+}
+
+#[test]
+fn conditions() {
+    check("A(1) A(5) A(9)", "A(x), (x > 4) ==> B(x)", "SA1B5B9");
+    check(
+        "A(1) A(5) A(9)",
+        "A(x), (x > 4), (x < 8) ==> B(x)",
+        "SA1B5A9",
+    );
+    check("A(1) A(5) A(9)", "A(5) ==> B(0)", "SA1B0A9");
+    check("A(1) A(5) A(9)", "a:A, (a == 9) ==> B(3)", "SA1A5B3");
+    check(
+        "A(1) A(5)",
+        "A(x), (x > 4) ==> B(x); A(x) ==> C(x)",
+        "SC1B5",
+    );
+    check(
+        "A(1) A(5)",
+        "A(x) ==> C(x); A(x), (x > 4) ==> B(x)",
+        "SC1C5",
+    );
+    check(
+        "A(1) A(1) A(2) A(2)",
+        "A(x) A(y), (x == y) ==> B(x)",
+        "SB1B2",
+    );
+}
+
+#[test]
+fn rules_of_one_step() {
+    check("A(1) B(2)", "A(x) ==> B(x); B(x) ==> C(x)", "SB1C2");
+    check("A(1)", "A(x) ==> A(x+1) A(x+2)", "SA2A3");
+    check("A(1) B(2) B(3)", "A(x) B ==> C(x); B(x) ==> D(x)", "SC1D3");
+    check(
+        "A(1) B(2) B(3)",
+        "B(x) ==> D(x); A(x) B ==> C(x)",
+        "SA1D2D3",
+    );
+    check("A(1) A(2) A(3)", "A(x) A(y) ==> B(x) B(y)", "SB1B2A3");
+    check("A(1)", "a:A ==> a B(2); A(x) ==> C(x)", "SC1");
+    check("A(1)", "a:A ==> a B(2); a:A ==> a C(3)", "SA1(B2)(C3)");
+    check(
+        "A(1) B(2) C(3)",
+        "A(x) ==> D(x); B(x) ==> E(x); C(x) ==> D(x)",
+        "SD1E2D3",
+    );
+    check("A(1) B(2) C(3)", "A ==> ; B ==> ", "SC3");
+    check(
+        "A(1) B(2) C(3)",
+        "A ==> D(1); B ==> ; C ==> [E(4)] E(5)",
+        "SD1E5",
+    );
+    check("A(1) B(2)", "A ==> D(9); (* A *) B(x) ==> E(x)", "SD9E2");
+}
+
+#[test]
+fn what_the_blank_matches() {
+    check("A(1) [B(2)]", "A(x) B(y) ==> D(10*x+y)", "SA1[B2]");
+    check("A(1) [B(2)]", "A(x) [B(y)] ==> D(10*x+y)", "SD12");
+    check("A(1) [B(2)]", "A(x) +> B(y) ==> D(10*x+y)", "SD12");
+    check("A(1) B(2)", "A(x) > B(y) ==> D(10*x+y)", "SD12");
+    check("A(1) [B(2)]", "A(x) > B(y) ==> D(10*x+y)", "SA1[B2]");
+    check("A(1) [B(2)]", "A(x) --> B(y) ==> D(10*x+y)", "SD12");
+    check("A(1) B(2)", "A(x) --> B(y) ==> D(10*x+y)", "SD12");
+    check(
+        "A(1) [B(4)] B(2) [C(5)] C(3)",
+        "A(x) B(y) C(z) ==> D(x*100+y*10+z)",
+        "SD123",
+    );
+    check(
+        "A(1) [B(4)] C(3)",
+        "A(x) [B(y)] C(z) ==> D(x*100+y*10+z)",
+        "SD143",
+    );
+    check(
+        "A(1) [B(4)] [C(5)] E(6)",
+        "A(x) [B(y)] [C(z)] ==> D(x*100+y*10+z)",
+        "SD145E6",
+    );
+    check("A(1) C(5) B(2)", "A(x) B(y) ==> D(x*10+y)", "SA1C5B2");
+}
+
+#[test]
+fn paths_in_queries() {
+    let start = "S A(1) [B(2) C(3)] B(4) [E(10) B(5)] C(6) [D(7) D(8)] A(9) B(10)";
+    let mut world = World::new(start);
+    for (query, expected) in [
+        ("A b:B", "4 10"),
+        ("A > b:B", "4 10"),
+        ("A +> b:B", "2"),
+        ("A --> b:B", "2 4 10"),
+        ("b:B < A", "4 10"),
+        ("b:B <-- A", "2 4 10"),
+        ("b:B <+ A", "2"),
+        ("B +> b:B", ""),
+        ("C < b:B", "2 4"),
+        ("A -- b:B", "2 4 10"),
+        ("A --- b:B", "4 10"),
+        ("A (-->)+ b:B", "2 4 5 10 10"),
+        ("A(1) (-->)+ b:B", "2 4 5 10"),
+        ("A(1) (>)+ b:B", "4 10"),
+        ("A(1) (-->)* b:B", "2 4 5 10"),
+        ("B (-->)* b:B", "2 4 5 10 5 10"),
+        ("A (-->){2} b:B", ""),
+        ("A (-->){1,3} b:B", "2 4 5 10"),
+        ("A (-->)? b:B", "2 4 10"),
+        ("B(10) (<--)+ b:A", "9 1"),
+        ("C(6) (<--)+ b:B", "4"),
+        ("A [b:B] C", ""),
+        ("A [B] b:B", "4"),
+        ("A, b:B", "2 2 4 4 5 5 10 10"),
+        ("A b:B, b C", "4"),
+        ("B -minDescendants-> b:B", "5 10"),
+        ("A -minDescendants-> b:B", "2 4 10"),
+        ("B -ancestor-> b:A", "1 1 1 9"),
+        ("D -ancestor-> b:B", "4 4"),
+        ("A -descendants-> b:B", "4 10 5 2 10"),
+        ("S (-->)+ b:A", "1 9"),
+        ("S (-->)+ b:B", "2 4 5 10"),
+        ("B(10) <-minDescendants- b:A", "9"),
+    ] {
+        assert_eq!(world.query(query), expected, "{query}");
+    }
+}
+
+#[test]
+fn root_and_axiom() {
+    let mut world = World::new("Axiom");
+    world
+        .step(&["Axiom ==> S A(1), ^ B(2), ^ [C(3)]"])
+        .expect("no errors");
+    assert_eq!(world.query("^ b:B"), "2");
+    assert_eq!(world.query("^ +> b:C"), "3");
+    world.step(&["A(x) ==>> ^ D(x)"]).expect("no errors");
+    assert_eq!(world.show(), "S");
+    assert_eq!(world.query("^ b:D"), "1");
+    assert_eq!(
+        world.step(&["D(x) ==> ^ E(x)"]),
+        Err(RewriteError::Graph(GraphError::SelfEdge))
+    );
+}
+
+#[test]
+fn sequential_steps_and_steps_without_exclusion() {
+    let mut world = World::new("S A(1) A(2) A(3)");
+    world.mode.derivation = Derivation::Sequential;
+    for expected in ["SA11A2A3", "SA21A2A3"] {
+        world
+            .step(&["A(x) ==> A(x+10)", "B(x) ==> C(x)"])
+            .expect("no errors");
+        assert_eq!(world.show(), expected);
+    }
+    world.mode = Mode {
+        excludes_consumed: true,
+        ..Mode::default()
+    };
+    world
+        .step(&["A(x) ==> A(x+10)", "B(x) ==> C(x)"])
+        .expect("no errors");
+    assert_eq!(world.show(), "SA31A12A13");
+    world.mode = Mode {
+        excludes_consumed: false,
+        ..Mode::default()
+    };
+    world
+        .step(&["A(x), (x > 5) ==> B(x)", "A(x) ==> C(x)"])
+        .expect("no errors");
+    let expected = "S(C31(B12(B13)(C13))(C12(B13)(C13)))(B31(B12(B13)(C13))(C12(B13)(C13)))";
+    assert_eq!(world.show(), expected);
+}
+
+#[test]
+fn self_and_subtree() {
+    let mut world = World::new("S A(1) B(20) [C(3) C(4)] D(5) E(6)");
+    world.step(&["c:C, (c == 3) ==>> "]).expect("no errors");
+    assert_eq!(world.show(), "SA1B20D5E6");
+    world.step(&["a:A b:B ==>> a, ^ b"]).expect("no errors");
+    assert_eq!(world.show(), "SA1");
+    assert_eq!(world.query("^ b:B"), "20");
+}
+
+#[test]
+fn a_context_does_not_cut_off_what_is_kept() {
+    check("A(1) B(2) C(3)", "(* A *) b:B ==> b D(4)", "SA1B2D4C3");
+}
+
+#[test]
+fn nodes_of_a_bracket_that_stands_first_are_born_last() {
+    let mut world = World::new("S Z");
+    world
+        .step(&["Z ==> [A(1)] [B(2) A(3)] [A(4)]"])
+        .expect("no errors");
+    assert_eq!(world.query("b:A"), "3 1 4");
+}
+
+#[test]
+fn a_long_run_does_not_leak() {
+    let mut world = World::new("S A(1)");
+    world
+        .step(&["A(x) ==> A(x) A(x) A(x) A(x)"])
+        .expect("no errors");
+    let mut memory = vec![];
+    for _ in 0..20 {
+        world
+            .step(&["A(x) ==> B(x)", "B(x) ==> A(x)"])
+            .expect("no errors");
+        memory.push(world.graph.memory());
+    }
+    assert_eq!(memory[4], memory[19]);
+    assert_eq!(world.graph.n_nodes(), 2 + 4);
+}
