@@ -460,3 +460,19 @@ fn instances_are_lit_like_what_they_copy() {
     let seen = observe(&scene, &path(None), ray([0.1, 0.1, 3.0], [0.0, 0.0, -1.0]));
     assert_mean("leaf", &seen, 0.7, 1);
 }
+
+#[test]
+fn impossible_light_is_refused_when_the_scene_is_built() {
+    let lamp = SceneDescription {
+        lights: vec![Light::point(DVec3::NAN, gray(1.0))],
+        ..SceneDescription::default()
+    };
+    let sky = SceneDescription {
+        environment: uniform_sky(f64::INFINITY),
+        ..SceneDescription::default()
+    };
+    let messages =
+        [lamp, sky].map(|description| Scene::build(description).unwrap_err().to_string());
+    assert!(messages[0].starts_with("light 0: "), "{}", messages[0]);
+    assert!(messages[1].starts_with("sky or sun: "), "{}", messages[1]);
+}

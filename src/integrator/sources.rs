@@ -5,7 +5,7 @@ use super::mis::power_heuristic;
 use super::path::Strategies;
 use crate::color::Rgb;
 use crate::light::alias::AliasTable;
-use crate::light::{Dome, LightSample, SunDisk};
+use crate::light::{Dome, Light, LightSample, SunDisk};
 use crate::material::{Scattering, ScatteringFrame};
 use crate::math::Ray;
 use crate::sampler::{Sampler, Use};
@@ -19,6 +19,9 @@ const FEW: usize = 16;
 /// Share of the choices that goes by power over all sources; the rest is split evenly over the kinds of sources, so that
 /// a lamp in a dark corner is not forgotten because the sun is stronger.
 const SHARE_BY_POWER: f64 = 0.5;
+
+/// Power in watts beyond which sources are told apart no more.
+const BRIGHTEST: f64 = 1e150;
 
 /// One source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -150,12 +153,25 @@ impl<'s> Sources<'s> {
     /// Light of one source at a point, and the ray on which it may be blocked.
     fn sample(&self, source: Source, point: &SurfacePoint, u: DVec2) -> Option<(LightSample, Ray)> {
         let light = match source {
-            Source::Lamp(index) => self.scene.lights()[index].illuminate(point.position)?,
+            Source::Lamp(index) => return self.sample_lamp(index, point),
             Source::Sun => self.sun.as_ref()?.sample(u),
             Source::Sky => self.dome.sample(u)?,
             Source::Emitter(id) => return self.sample_emitter(id, point, u),
         };
         Some((light, point.spawn_ray(light.wi).until(light.distance)))
+    }
+
+    fn sample_lamp(&self, index: usize, point: &SurfacePoint) -> Option<(LightSample, Ray)> {
+        let lamp = &self.scene.lights()[index];
+        let light = lamp.illuminate(point.position)?;
+        let ray = match lamp {
+            // The ray ends just before the lamp, which may sit on a surface.
+            Light::Point { position, .. } | Light::Spot { position, .. } => {
+                point.spawn_ray_to(*position)
+            }
+            Light::Directional { .. } => point.spawn_ray(light.wi).until(light.distance),
+        };
+        Some((light, ray))
     }
 
     fn sample_emitter(
@@ -318,7 +334,8 @@ fn weights(scene: &Scene, dome: &Dome, sun: Option<&SunDisk>, sources: &[Source]
                 both * (PI * emitter.area())
             }
         };
-        power.sum()
+        // What is brighter than this is chosen as if it were this bright, so that sums stay finite.
+        power.sum().min(BRIGHTEST)
     };
     let powers: Vec<f64> = sources.iter().map(power).collect();
 

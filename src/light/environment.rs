@@ -1,5 +1,6 @@
 //! Light from infinitely far away: the sky and the disk of the sun, as plain data.
 
+use super::lamp::{LightError, check_brightness, check_finite, check_unit};
 use crate::color::Rgb;
 use crate::math::angle::Angle;
 use glam::DVec3;
@@ -49,6 +50,36 @@ pub struct SunDisk {
 }
 
 impl Environment {
+    /// Checks that no number in it is NaN, infinite or negative where it must not be. Turbidity and ground albedo are
+    /// clamped to the range of the data when the sky is made ready, and a sun below the horizon is night.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn validate(&self) -> Result<(), LightError> {
+        match &self.sky {
+            Sky::None => {}
+            Sky::Uniform(radiance) => check_brightness(*radiance)?,
+            Sky::ClearSky {
+                sun_azimuth,
+                sun_elevation,
+                turbidity,
+                ground_albedo,
+            } => {
+                let toward = direction(*sun_azimuth, *sun_elevation);
+                check_finite(toward, "direction of the sun")?;
+                check_brightness(Rgb::splat(*turbidity))?;
+                check_brightness(*ground_albedo)?;
+            }
+        }
+        self.sun.as_ref().map_or(Ok(()), |sun| {
+            check_unit(sun.to_sun, "direction of the sun")?;
+            check_brightness(sun.irradiance)?;
+            let radius = sun.angular_radius.degrees();
+            let is_disk = radius > 0.0 && radius < 90.0;
+            is_disk.then_some(()).ok_or(LightError::SunDisk { radius })
+        })
+    }
+
     /// The daylight of a clear day: sky and sun that belong together.
     ///
     /// `azimuth` of the sun from +x towards +y, `elevation` above the horizon; `turbidity` 1 (pure air) ..=10 (hazy);
@@ -75,4 +106,42 @@ pub fn direction(azimuth: Angle, elevation: Angle) -> DVec3 {
         elevation.cos() * azimuth.sin(),
         elevation.sin(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn impossible_skies_are_refused_and_night_is_not() {
+        let albedo = Rgb::splat(0.2);
+        let day = |elevation: f64| {
+            Environment::daylight(Angle::deg(20.0), Angle::deg(elevation), 3.0, albedo)
+        };
+        for fine in [Environment::default(), day(40.0), day(-40.0)] {
+            assert_eq!(fine.validate(), Ok(()));
+        }
+        let uniform = |radiance| Environment {
+            sky: Sky::Uniform(Rgb::splat(radiance)),
+            sun: None,
+        };
+        let mut wide = day(40.0);
+        if let Some(sun) = &mut wide.sun {
+            sun.angular_radius = Angle::deg(90.0);
+        }
+        let mut crooked = day(40.0);
+        if let Some(sun) = &mut crooked.sun {
+            sun.to_sun *= 2.0;
+        }
+        let wrong = [
+            uniform(f64::NAN),
+            uniform(-1.0),
+            day(f64::NAN),
+            wide,
+            crooked,
+        ];
+        for environment in wrong {
+            assert!(environment.validate().is_err(), "{environment:?}");
+        }
+    }
 }

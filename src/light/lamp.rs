@@ -24,6 +24,12 @@ pub enum LightError {
         /// Half angle of no intensity, degrees.
         outer: f64,
     },
+    /// The disk of a sun is nothing, or half the sky.
+    #[error("the angular radius of the sun is {radius}°, not between 0 and 90")]
+    SunDisk {
+        /// What was given, degrees.
+        radius: f64,
+    },
 }
 
 impl Light {
@@ -109,24 +115,13 @@ impl Light {
     /// # Errors
     /// The first thing that is wrong.
     pub fn validate(&self) -> Result<(), LightError> {
-        let finite = |v: DVec3, what| v.is_finite().then_some(()).ok_or(LightError::Vector(what));
-        let unit = |v: DVec3, what| {
-            let is_unit = (v.length() - 1.0).abs() <= UNIT_LENGTH;
-            is_unit.then_some(()).ok_or(LightError::Vector(what))
-        };
-        let bright = |c: Rgb| {
-            let is_fine = c.is_finite() && c.min_channel() >= 0.0;
-            is_fine
-                .then_some(())
-                .ok_or(LightError::Brightness(c.to_array()))
-        };
         match *self {
             Self::Point {
                 position,
                 intensity,
             } => {
-                finite(position, "position")?;
-                bright(intensity)
+                check_finite(position, "position")?;
+                check_brightness(intensity)
             }
             Self::Spot {
                 position,
@@ -135,25 +130,44 @@ impl Light {
                 outer,
                 intensity,
             } => {
-                finite(position, "position")?;
-                unit(axis, "direction")?;
+                check_finite(position, "position")?;
+                check_unit(axis, "direction")?;
                 let (i, o) = (inner.degrees(), outer.degrees());
                 if !(0.0 <= i && i <= o && o <= 180.0) {
                     return Err(LightError::Angles { inner: i, outer: o });
                 }
-                bright(intensity)
+                check_brightness(intensity)
             }
             Self::Directional {
                 direction,
                 irradiance,
                 origin,
             } => {
-                finite(origin, "position")?;
-                unit(direction, "direction")?;
-                bright(irradiance)
+                check_finite(origin, "position")?;
+                check_unit(direction, "direction")?;
+                check_brightness(irradiance)
             }
         }
     }
+}
+
+/// Checks that a vector is finite.
+pub(super) fn check_finite(v: DVec3, what: &'static str) -> Result<(), LightError> {
+    v.is_finite().then_some(()).ok_or(LightError::Vector(what))
+}
+
+/// Checks that a vector has unit length.
+pub(super) fn check_unit(v: DVec3, what: &'static str) -> Result<(), LightError> {
+    let is_unit = (v.length() - 1.0).abs() <= UNIT_LENGTH;
+    is_unit.then_some(()).ok_or(LightError::Vector(what))
+}
+
+/// Checks that a brightness is finite and not negative.
+pub(super) fn check_brightness(c: Rgb) -> Result<(), LightError> {
+    let is_fine = c.is_finite() && c.min_channel() >= 0.0;
+    is_fine
+        .then_some(())
+        .ok_or(LightError::Brightness(c.to_array()))
 }
 
 /// Light of a point source whose intensity depends on the unit direction away from it.

@@ -1,6 +1,7 @@
 //! Why a description cannot become a scene.
 
 use super::description::OrganId;
+use crate::light::LightError;
 use crate::material::MaterialError;
 
 /// What is wrong with a [`SceneDescription`](super::description::SceneDescription), and with which organ of it.
@@ -14,6 +15,17 @@ pub enum SceneError {
         /// What is wrong with it.
         source: MaterialError,
     },
+    /// A light source that cannot exist.
+    #[error("light {index}: {source}")]
+    Light {
+        /// Its number.
+        index: usize,
+        /// What is wrong with it.
+        source: LightError,
+    },
+    /// A sky or sun that cannot exist.
+    #[error("sky or sun: {0}")]
+    Environment(#[source] LightError),
     /// A shape or instance that cannot be placed.
     #[error("{problem}")]
     Organ {

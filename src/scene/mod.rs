@@ -111,6 +111,15 @@ impl Scene {
                 .validate()
                 .map_err(|source| SceneError::Material { index, source })?;
         }
+        for (index, light) in description.lights.iter().enumerate() {
+            light
+                .validate()
+                .map_err(|source| SceneError::Light { index, source })?;
+        }
+        description
+            .environment
+            .validate()
+            .map_err(SceneError::Environment)?;
         let plan = plan::plan(&description)?;
         let groups = bake_all(&plan, &description.materials)?;
         let planes = bake::world_planes(&plan.groups)?;
