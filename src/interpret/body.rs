@@ -5,9 +5,10 @@
 
 use super::canvas::Canvas;
 use super::failure::{self, Failure};
-use super::source::{Body, BodyEvent, Source};
+use super::source::{Body, Source};
 use super::walk::{Painter, Place};
 use crate::graph::{FieldKind, NodeId, TypeId};
+use crate::rewrite::Instantiated;
 use crate::scene::description::{GroupId, PlacedShape};
 use crate::turtle::TurtleState;
 use std::collections::HashMap;
@@ -76,9 +77,9 @@ impl<S: Source> Painter<'_, S> {
         if body.is_pure && !self.prototypes.sharing(ty).is_over && self.find_key(node, ty, state) {
             return self.draw_shared(node, ty, state, inside);
         }
-        let events = self.run_body(node)?;
-        let drawn = self.draw_events(&events, state, inside);
-        self.source.release(&events);
+        let made = self.run_body(node)?;
+        let drawn = self.draw_made(&made, state, inside);
+        self.source.release(made);
         drawn
     }
 
@@ -95,18 +96,18 @@ impl<S: Source> Painter<'_, S> {
             return self.place_prototype(known, node, state, inside);
         }
         let key: Box<[u64]> = self.prototypes.key.as_slice().into();
-        let events = self.run_body(node)?;
+        let made = self.run_body(node)?;
         let outer = std::mem::take(&mut self.canvas);
-        let mut drawn = self.draw_events(&events, &state.at_origin(), inside);
+        let mut drawn = self.draw_made(&made, &state.at_origin(), inside);
         let canvas = std::mem::replace(&mut self.canvas, outer);
         if canvas.is_bound && drawn.is_ok() {
             // It looks different wherever it stands: draw it here, and the others of its type where they are.
             self.prototypes.sharing(ty).is_over = true;
-            drawn = self.draw_events(&events, state, inside);
-            self.source.release(&events);
+            drawn = self.draw_made(&made, state, inside);
+            self.source.release(made);
             return drawn;
         }
-        self.source.release(&events);
+        self.source.release(made);
         drawn?;
         let known = self.keep_prototype(canvas, key, ty);
         self.place_prototype(known, node, state, inside)
@@ -191,57 +192,27 @@ impl<S: Source> Painter<'_, S> {
         true
     }
 
-    fn run_body(&mut self, node: NodeId) -> Result<Vec<BodyEvent>, Failure> {
-        let mut events = Vec::new();
-        match self.source.instantiate(node, &mut events) {
-            Ok(()) => Ok(events),
-            Err(failure) => {
-                self.source.release(&events);
-                let place = Place::default();
-                let name = self.name(node, place);
-                let during = format!("while drawing the body of {name}");
-                Err(Box::new(failure.during(during)))
-            }
-        }
+    fn run_body(&mut self, node: NodeId) -> Result<Instantiated, Failure> {
+        self.source.instantiate(node).map_err(|failure| {
+            let name = self.name(node, Place::default());
+            Box::new(failure.during(format!("while drawing the body of {name}")))
+        })
     }
 
-    /// Draws what a body made, beginning from `start`.
-    fn draw_events(
+    /// Draws what a body made; each of its parts begins from `start`.
+    fn draw_made(
         &mut self,
-        events: &[BodyEvent],
+        made: &Instantiated,
         start: &TurtleState,
         place: Place,
     ) -> Result<(), Failure> {
-        let mut state = *start;
-        let mut open: Vec<TurtleState> = Vec::new();
-        let mut is_branch = false;
-        for event in events {
-            match event {
-                BodyEvent::Push => {
-                    open.push(state);
-                    is_branch = true;
-                }
-                BodyEvent::Pop => {
-                    state = open.pop().unwrap_or(*start);
-                    is_branch = false;
-                }
-                BodyEvent::Restart => {
-                    state = open.last().copied().unwrap_or(*start);
-                }
-                BodyEvent::Node(node) => {
-                    self.body_nodes += 1;
-                    if self.body_nodes > self.limits.body_nodes {
-                        let (name, span) = (self.name(*node, place), self.span(*node, place));
-                        let limit = self.limits.body_nodes;
-                        return Err(failure::too_many_body_nodes(&name, limit, span));
-                    }
-                    if std::mem::take(&mut is_branch) {
-                        state.enter_branch();
-                    }
-                    self.draw_node(*node, &mut state, place)?;
-                }
+        made.heads.iter().try_for_each(|&(head, is_branch)| {
+            let mut state = *start;
+            if is_branch {
+                state.enter_branch();
             }
-        }
-        Ok(())
+            self.draw_node(head, &mut state, place)?;
+            self.draw_below(head, state, place)
+        })
     }
 }

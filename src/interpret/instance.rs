@@ -76,8 +76,12 @@ impl<S: Source> Painter<'_, S> {
         };
         self.instances.by_node.insert(target, Subgraph::Open);
         self.instances.nesting += 1;
+        let below = Place {
+            owner: None,
+            depth: place.depth,
+        };
         let outer = std::mem::take(&mut self.canvas);
-        let drawn = self.draw_below(target, start.at_origin(), place.depth);
+        let drawn = self.draw_below(target, start.at_origin(), below);
         let canvas = std::mem::replace(&mut self.canvas, outer);
         self.instances.nesting -= 1;
         drawn?;

@@ -32,7 +32,7 @@ mod walk;
 pub use appearance::{Appearance, Lamp, LampKind, Surface};
 pub use failure::{Failure, explain};
 pub use organs::{Organ, Organs};
-pub use source::{Body, BodyEvent, Source};
+pub use source::{Body, Source};
 
 use crate::diag::Diagnostics;
 use crate::math::Bounds3;

@@ -4,6 +4,7 @@ use super::appearance::Appearance;
 use super::failure::Failure;
 use crate::diag::Span;
 use crate::graph::{Graph, NodeId, TypeId};
+use crate::rewrite::Instantiated;
 
 /// A grown model: its graph, and what runs the instantiation bodies of its modules.
 pub trait Source {
@@ -16,15 +17,15 @@ pub trait Source {
     /// The instantiation body of a type, its own or inherited.
     fn body(&self, ty: TypeId) -> Option<Body>;
 
-    /// Runs the body of a node and appends what it makes. The nodes exist until they are [released](Self::release) but are
-    /// in no extent and linked to nothing.
+    /// Runs the body of a node. What it makes floats: in no extent, linked to nothing but itself, and there until it is
+    /// [released](Self::release).
     ///
     /// # Errors
     /// The body failed.
-    fn instantiate(&mut self, node: NodeId, events: &mut Vec<BodyEvent>) -> Result<(), Failure>;
+    fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Failure>;
 
-    /// Frees the nodes that a body made.
-    fn release(&mut self, events: &[BodyEvent]);
+    /// Frees what a body made.
+    fn release(&mut self, made: Instantiated);
 
     /// Where a module is declared.
     fn declared_at(&self, ty: TypeId) -> Option<Span>;
@@ -35,17 +36,4 @@ pub trait Source {
 pub struct Body {
     /// Whether it depends on nothing but the node's own fields, so that equal fields give equal geometry.
     pub is_pure: bool,
-}
-
-/// What a body makes, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyEvent {
-    /// A node, linked to the one before.
-    Node(NodeId),
-    /// `[`
-    Push,
-    /// `]`
-    Pop,
-    /// `,`: what follows begins where the body began.
-    Restart,
 }

@@ -5,6 +5,7 @@ use crate::geometry::Shape;
 use crate::graph::{EdgeBits, Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::light::{Light, Sky};
 use crate::material::Scattering;
+use crate::rewrite::Instantiated;
 use crate::scene::Scene;
 use crate::scene::description::{OrganId, PlacedShape};
 use crate::turtle::types;
@@ -62,7 +63,7 @@ impl Appearance for Object {
     }
 }
 
-type MakeBody = fn(&mut World, NodeId, &mut Vec<BodyEvent>);
+type MakeBody = fn(&mut World, &mut Instantiated);
 
 /// A hand-made model.
 struct World {
@@ -172,7 +173,7 @@ impl Source for World {
         found.map(|(_, body, _)| *body)
     }
 
-    fn instantiate(&mut self, node: NodeId, events: &mut Vec<BodyEvent>) -> Result<(), Failure> {
+    fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Failure> {
         if self.fails {
             return Err(Box::new(Diagnostic::error(
                 "test",
@@ -183,15 +184,14 @@ impl Source for World {
         self.n_runs += 1;
         let ty = self.graph.type_of(node).unwrap();
         let (_, _, make) = self.bodies.iter().find(|(of, ..)| *of == ty).unwrap();
-        make(self, node, events);
-        Ok(())
+        let mut made = Instantiated::default();
+        make(self, &mut made);
+        Ok(made)
     }
 
-    fn release(&mut self, events: &[BodyEvent]) {
-        for event in events {
-            if let BodyEvent::Node(node) = event {
-                self.graph.remove(*node);
-            }
+    fn release(&mut self, made: Instantiated) {
+        for node in made.nodes {
+            self.graph.remove(node);
         }
     }
 
@@ -201,15 +201,30 @@ impl Source for World {
     }
 }
 
-/// Appends what `text` says, with brackets, to what a body makes.
-fn make(world: &mut World, events: &mut Vec<BodyEvent>, text: &str) {
+/// Makes what `text` says, with brackets and commas.
+fn make(world: &mut World, made: &mut Instantiated, text: &str) {
+    let (mut at, mut open, mut bits) = (None, vec![], EdgeBits::SUCCESSOR);
     for word in text.split_whitespace() {
-        events.push(match word {
-            "[" => BodyEvent::Push,
-            "]" => BodyEvent::Pop,
-            "," => BodyEvent::Restart,
-            _ => BodyEvent::Node(world.create(word)),
-        });
+        match word {
+            "[" => {
+                open.push(at);
+                bits = EdgeBits::BRANCH;
+            }
+            "]" => {
+                at = open.pop().unwrap();
+                bits = EdgeBits::SUCCESSOR;
+            }
+            "," => at = None,
+            _ => {
+                let node = world.create(word);
+                match at {
+                    Some(at) => world.graph.add_edge(at, node, bits).unwrap(),
+                    None => made.heads.push((node, bits == EdgeBits::BRANCH)),
+                }
+                made.nodes.push(node);
+                (at, bits) = (Some(node), EdgeBits::SUCCESSOR);
+            }
+        }
     }
 }
 
@@ -442,10 +457,10 @@ fn area_lights_send_their_power_from_the_front() {
 #[test]
 fn bodies_draw_but_do_not_move() {
     let mut world = World::new(&["Leaf", "Stalk"]);
-    world.define("Leaf", true, |w, _, out| {
+    world.define("Leaf", true, |w, out| {
         make(w, out, "RL(90) Parallelogram(2,1)");
     });
-    world.define("Stalk", false, |w, _, out| {
+    world.define("Stalk", false, |w, out| {
         make(w, out, "F(2,0.1) [ RU(90) F(1,0.1) ] F(3,0.1) , Sphere(1)");
     });
     let root = world.root();
@@ -474,8 +489,8 @@ fn bodies_draw_but_do_not_move() {
 #[test]
 fn pure_bodies_are_drawn_once_and_placed() {
     let mut world = World::new(&["Leaf", "Twig"]);
-    world.define("Leaf", true, |w, _, out| make(w, out, "Parallelogram(2,1)"));
-    world.define("Twig", true, |w, _, out| {
+    world.define("Leaf", true, |w, out| make(w, out, "Parallelogram(2,1)"));
+    world.define("Twig", true, |w, out| {
         make(
             w,
             out,
@@ -507,7 +522,7 @@ fn pure_bodies_are_drawn_once_and_placed() {
 #[test]
 fn bodies_that_feel_gravity_are_not_shared() {
     let mut world = World::new(&["Leaf"]);
-    world.define("Leaf", true, |w, _, out| make(w, out, "RV(1) F(1)"));
+    world.define("Leaf", true, |w, out| make(w, out, "RV(1) F(1)"));
     let root = world.root();
     world.grow(root, "[ RU(90) Leaf ] [ RU(120) Leaf ] [ RU(180) Leaf ]");
     let drawn = world.draw();
@@ -522,7 +537,7 @@ fn bodies_that_feel_gravity_are_not_shared() {
 #[test]
 fn endless_bodies_are_stopped() {
     let mut world = World::new(&["Again"]);
-    world.define("Again", true, |w, _, out| make(w, out, "Again"));
+    world.define("Again", true, |w, out| make(w, out, "Again"));
     let root = world.root();
     world.grow(root, "Again");
     let failure = world.refuse(Limits::default());
@@ -532,7 +547,7 @@ fn endless_bodies_are_stopped() {
     assert_eq!(world.graph.n_nodes(), 3, "nothing is left behind");
 
     let mut world = World::new(&["Again"]);
-    world.define("Again", false, |w, _, out| {
+    world.define("Again", false, |w, out| {
         make(w, out, "[ Again ] [ Again ]");
     });
     let root = world.root();
@@ -547,7 +562,7 @@ fn endless_bodies_are_stopped() {
 #[test]
 fn failing_bodies_are_named() {
     let mut world = World::new(&["Leaf"]);
-    world.define("Leaf", false, |w, _, out| make(w, out, "F(1)"));
+    world.define("Leaf", false, |w, out| make(w, out, "F(1)"));
     world.fails = true;
     let root = world.root();
     world.grow(root, "Leaf");
@@ -624,7 +639,7 @@ fn impossible_geometry_names_its_organ() {
         assert_eq!(failure.slug, "not-finite", "{text}");
     }
     let mut world = World::new(&["Leaf"]);
-    world.define("Leaf", true, |w, _, out| make(w, out, "F(NaN)"));
+    world.define("Leaf", true, |w, out| make(w, out, "F(NaN)"));
     let root = world.root();
     world.grow(root, "Leaf");
     let failure = world.refuse(Limits::default());

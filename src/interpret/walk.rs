@@ -30,6 +30,15 @@ pub(super) struct Place {
     pub(super) depth: usize,
 }
 
+/// What is still to be drawn of a walk.
+#[derive(Debug, Default)]
+struct Way {
+    /// Children of open forks, the next one of the innermost fork last.
+    pending: Vec<(NodeId, EdgeBits)>,
+    /// Open forks: where their children begin in `pending`, and the state they start from.
+    forks: Vec<(usize, TurtleState)>,
+}
+
 /// Draws a model.
 pub(super) struct Painter<'s, S: Source> {
     pub(super) source: &'s mut S,
@@ -41,7 +50,9 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) poses: Poses,
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
-    pub(super) body_nodes: u64,
+    body_nodes: u64,
+    /// Emptied, to be used again.
+    spare_ways: Vec<Way>,
     bodies: Vec<Option<Body>>,
     pub(super) materials: Materials,
     pub(super) sky: Rgb,
@@ -67,6 +78,7 @@ impl<'s, S: Source> Painter<'s, S> {
             prototypes: Prototypes::default(),
             instances: Instances::default(),
             body_nodes: 0,
+            spare_ways: Vec::new(),
             bodies,
             materials: Materials::default(),
             organs: Organs::new(types, spans),
@@ -80,7 +92,7 @@ impl<'s, S: Source> Painter<'s, S> {
     /// Draws all that hangs on the root.
     pub(super) fn draw_world(&mut self) -> Result<(), Failure> {
         let root = self.source.graph().root();
-        self.draw_below(root, TurtleState::default(), 0)
+        self.draw_below(root, TurtleState::default(), Place::default())
     }
 
     pub(super) fn finish(mut self) -> Interpretation {
@@ -121,22 +133,33 @@ impl<'s, S: Source> Painter<'s, S> {
         id
     }
 
-    /// Draws all that hangs on a node, whose children start from `state`; `depth` bodies stand round it.
-    ///
-    /// Chains of any length: only forks are remembered. The children of an open fork lie on `pending`, the next one last.
+    /// Draws all that hangs on a node, whose children start from `state`. Chains of any length: only forks are remembered.
     pub(super) fn draw_below(
         &mut self,
         start: NodeId,
         state: TurtleState,
-        depth: usize,
+        place: Place,
     ) -> Result<(), Failure> {
-        let place = Place { owner: None, depth };
-        let mut pending: Vec<(NodeId, EdgeBits)> = Vec::new();
-        let mut forks: Vec<(usize, TurtleState)> = Vec::new();
+        let mut way = self.spare_ways.pop().unwrap_or_default();
+        let drawn = self.follow_ways(start, state, place, &mut way);
+        way.pending.clear();
+        way.forks.clear();
+        self.spare_ways.push(way);
+        drawn
+    }
+
+    fn follow_ways(
+        &mut self,
+        start: NodeId,
+        state: TurtleState,
+        place: Place,
+        way: &mut Way,
+    ) -> Result<(), Failure> {
+        let Way { pending, forks } = way;
         let (mut node, mut state) = (start, state);
         loop {
             let floor = pending.len();
-            self.push_children(node, &mut pending);
+            self.push_children(node, pending);
             let n_children = pending.len() - floor;
             if n_children > 1 {
                 forks.push((floor, state));
@@ -182,6 +205,9 @@ impl<'s, S: Source> Painter<'s, S> {
         state: &mut TurtleState,
         place: Place,
     ) -> Result<(), Failure> {
+        if place.depth > 0 {
+            self.count_body_node(node, place)?;
+        }
         let graph = self.source.graph();
         let does = effect(graph, node);
         apply_own_transform(graph, node, state);
@@ -200,6 +226,16 @@ impl<'s, S: Source> Painter<'s, S> {
             return Ok(());
         };
         self.draw_body(node, body, state, place)
+    }
+
+    fn count_body_node(&mut self, node: NodeId, place: Place) -> Result<(), Failure> {
+        self.body_nodes += 1;
+        if self.body_nodes <= self.limits.body_nodes {
+            return Ok(());
+        }
+        let (name, span) = (self.name(node, place), self.span(node, place));
+        let limit = self.limits.body_nodes;
+        Err(failure::too_many_body_nodes(&name, limit, span))
     }
 
     fn body_of(&self, node: NodeId) -> Option<Body> {
