@@ -281,7 +281,9 @@ impl Checker<'_> {
         if !self.may_collect("a range", span) {
             return None;
         }
+        let outer = std::mem::take(&mut self.cx.collector);
         let (from, to) = (self.value(from), self.value(to));
+        self.cx.collector = outer;
         let (from, to) = (self.unbox(from?), self.unbox(to?));
         let is_long = from.ty == Type::Long || to.ty == Type::Long;
         let ty = if is_long { Type::Long } else { Type::Int };

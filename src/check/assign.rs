@@ -228,8 +228,7 @@ impl Checker<'_> {
             self.report(Diagnostic::error("bad-operands", span, message));
             return None;
         };
-        // As in compound assignment the value is narrowed to the property's type.
-        let value = Box::new(self.convert(value, &ty));
+        let value = Box::new(self.assign_value(value, &ty)?);
         Some(Expr {
             kind: ExprKind::Deferred {
                 node,

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::context::{Body, Context};
-use super::declare::{MethodInfo, MethodSource};
+use super::declaration::{MethodInfo, MethodSource};
 use super::model::{Method, MethodId, Model, StaticId, Type};
 use crate::diag::Diagnostic;
 

@@ -7,7 +7,7 @@ use super::overload::{Overload, Wanted};
 use super::setter::Accessor;
 use crate::diag::{Diagnostic, Span};
 use crate::graph::TypeId;
-use crate::library::{self, ClassId, ConstructorId, FunctionId};
+use crate::library::{self, ClassId, FunctionId};
 use crate::syntax::ast;
 
 /// What can be called.
@@ -241,58 +241,6 @@ impl Checker<'_> {
         self.apply(callee, Some(object), args, !is_super, span)
     }
 
-    fn report_unknown_method(&mut self, ty: &Type, member: &ast::Ident) {
-        if let Type::Node(id) = ty
-            && self.is_orphan(*id)
-        {
-            return;
-        }
-        let name = member.name.as_str();
-        let message = format!("`{}` has no method `{name}`", self.type_name(ty));
-        let fault =
-            Diagnostic::error("unknown-method", member.span, message).label("no such method");
-        let lineage: Vec<&str> = match ty {
-            Type::Class(class) => class.lineage().map(ClassId::name).collect(),
-            Type::String => vec!["String"],
-            _ => vec![],
-        };
-        let of_library = library::MethodId::ALL
-            .iter()
-            .filter(|m| !m.is_hidden())
-            .map(|m| m.signature());
-        let mut known: Vec<String> = of_library
-            .filter(|row| lineage.contains(&row.owner))
-            .map(|row| row.name.into())
-            .collect();
-        if let Type::Node(id) = ty {
-            let is_own = |m: &&super::declare::MethodInfo<'_>| {
-                m.owner.is_some_and(|o| self.types.is_a(*id, o))
-            };
-            known.extend(self.methods.iter().filter(is_own).map(|m| m.name.into()));
-            let visible = self.types[*id]
-                .fields
-                .iter()
-                .map(|f| &*f.name)
-                .filter(|n| !n.contains('.'));
-            let prefix = if name.starts_with("set") {
-                "set"
-            } else {
-                "get"
-            };
-            let accessor = |field: &str| {
-                let mut letters = field.chars();
-                let first = letters
-                    .next()
-                    .map(|c| c.to_uppercase().to_string())
-                    .unwrap_or_default();
-                format!("{prefix}{first}{}", letters.as_str())
-            };
-            known.extend(visible.map(accessor));
-        }
-        let fault = self.did_you_mean(fault, name, known.iter().map(String::as_str));
-        self.report(fault);
-    }
-
     /// `Math.f(args)`, `parameters.f(args)`, `Module.f(args)`.
     fn call_static(
         &mut self,
@@ -425,103 +373,5 @@ impl Checker<'_> {
                 })
             }
         }
-    }
-
-    /// The fault of a call of something unknown; `None` if it was refused before.
-    fn unknown_function(&self, name: &str, span: Span) -> Option<Diagnostic> {
-        if self.refused.contains(name) || self.cx.this.is_some_and(|this| self.is_orphan(this)) {
-            return None;
-        }
-        if name == "apply" {
-            let fault = Diagnostic::error(
-                "bad-apply",
-                span,
-                "`apply(n)` can stand only in the head of a `for`",
-            );
-            return Some(fault.hint("write `for (apply(n)) …`"));
-        }
-        if let Some(hint) = super::refuse::function_hint(name) {
-            let message = format!("`{name}` is not supported");
-            return Some(Diagnostic::error("unsupported-function", span, message).hint(hint));
-        }
-        let fault = Diagnostic::error(
-            "unknown-function",
-            span,
-            format!("unknown function `{name}`"),
-        );
-        if self.node_type(name).is_some() {
-            return Some(
-                fault
-                    .label("this is a module")
-                    .hint(format!("write `new {name}(…)` outside of rules")),
-            );
-        }
-        if !library::functions_named("Math", name).is_empty() {
-            return Some(fault.hint(format!(
-                "write `Math.{name}(…)`, or begin the file with `import static java.lang.Math.*;`"
-            )));
-        }
-        let functions = FunctionId::ALL
-            .iter()
-            .map(|f| f.signature())
-            .filter(|row| row.owner.is_empty());
-        let known = self
-            .methods
-            .iter()
-            .map(|m| m.name)
-            .chain(functions.map(|row| row.name));
-        Some(self.did_you_mean(
-            fault.label("no such function"),
-            name,
-            known.chain(super::aggregate::NAMES.iter().copied()),
-        ))
-    }
-
-    /// `new C(args)` of a library class.
-    pub(super) fn new_library_object(
-        &mut self,
-        class: ClassId,
-        args: Vec<Expr>,
-        span: Span,
-    ) -> Option<Expr> {
-        let all = library::constructors_of(class);
-        if all.is_empty() {
-            let message = format!("`{}` cannot be made with `new`", class.name());
-            self.report(Diagnostic::error("bad-new", span, message));
-            return None;
-        }
-        let (id, args) = self.choose_constructor(class.name(), all, args, span)?;
-        Some(Expr {
-            kind: ExprKind::NewObject(id, args),
-            ty: Type::Class(class),
-            span,
-        })
-    }
-
-    /// `new String(…)`.
-    pub(super) fn new_string(&mut self, args: Vec<Expr>, span: Span) -> Option<Expr> {
-        let all = [ConstructorId::String, ConstructorId::StringCopy];
-        let (id, args) = self.choose_constructor("String", &all, args, span)?;
-        Some(Expr {
-            kind: ExprKind::NewObject(id, args),
-            ty: Type::String,
-            span,
-        })
-    }
-
-    fn choose_constructor(
-        &mut self,
-        name: &str,
-        all: &[ConstructorId],
-        args: Vec<Expr>,
-        span: Span,
-    ) -> Option<(ConstructorId, Vec<Expr>)> {
-        let overloads: Vec<_> = all
-            .iter()
-            .map(|&id| Overload::of_signature(id, id.signature(), self))
-            .collect();
-        let (id, args) = self.choose(name, span, &overloads, args)?;
-        self.note_effect(id.signature().effect);
-        Some((id, args))
     }
 }

@@ -151,6 +151,14 @@ impl Context {
         }
     }
 
+    /// Whether a variable of this name can be seen.
+    pub(super) fn has_local(&self, name: &str) -> bool {
+        self.layers.iter().any(|layer| match layer {
+            Layer::Block(locals) => locals.iter().any(|local| local.name == name),
+            Layer::With(..) => false,
+        })
+    }
+
     /// Names of all variables that can be seen.
     pub(super) fn local_names(&self) -> Vec<String> {
         let blocks = self.layers.iter().rev().filter_map(|layer| match layer {

@@ -4,6 +4,8 @@ use super::Checker;
 use super::model::Type;
 use crate::diag::{Diagnostic, Span, nearest};
 use crate::graph::TypeId;
+use crate::library::{self, ClassId, FunctionId};
+use crate::syntax::ast;
 
 impl Checker<'_> {
     /// Adds the nearest of the names that could have been meant.
@@ -13,12 +15,14 @@ impl Checker<'_> {
         name: &str,
         candidates: impl IntoIterator<Item = &'n str>,
     ) -> Diagnostic {
-        match nearest(
-            name,
-            candidates
-                .into_iter()
-                .filter(|c| *c != name && !c.contains('.')),
-        ) {
+        // Short names are near to very many: of those only slips of case and of one letter in three are mended.
+        let is_near = |c: &str| match name.chars().count() {
+            0..=2 => c.eq_ignore_ascii_case(name),
+            3 => strsim::damerau_levenshtein(name, c) <= 1 || c.eq_ignore_ascii_case(name),
+            _ => true,
+        };
+        let is_candidate = |c: &&str| *c != name && !c.contains('.') && is_near(c);
+        match nearest(name, candidates.into_iter().filter(is_candidate)) {
             Some(near) => fault.hint(format!("did you mean `{near}`?")),
             None => fault,
         }
@@ -45,5 +49,108 @@ impl Checker<'_> {
             return fault.hint("compare it with something, such as `!= 0`");
         }
         fault
+    }
+
+    /// Reports a method that objects of a type do not have.
+    pub(super) fn report_unknown_method(&mut self, ty: &Type, member: &ast::Ident) {
+        if let Type::Node(id) = ty
+            && self.is_orphan(*id)
+        {
+            return;
+        }
+        let name = member.name.as_str();
+        let message = format!("`{}` has no method `{name}`", self.type_name(ty));
+        let fault =
+            Diagnostic::error("unknown-method", member.span, message).label("no such method");
+        let lineage: Vec<&str> = match ty {
+            Type::Class(class) => class.lineage().map(ClassId::name).collect(),
+            Type::String => vec!["String"],
+            _ => vec![],
+        };
+        let of_library = library::MethodId::ALL
+            .iter()
+            .filter(|m| !m.is_hidden())
+            .map(|m| m.signature());
+        let mut known: Vec<String> = of_library
+            .filter(|row| lineage.contains(&row.owner))
+            .map(|row| row.name.into())
+            .collect();
+        if let Type::Node(id) = ty {
+            let is_own = |m: &&super::declaration::MethodInfo<'_>| {
+                m.owner.is_some_and(|o| self.types.is_a(*id, o))
+            };
+            known.extend(self.methods.iter().filter(is_own).map(|m| m.name.into()));
+            let visible = self.types[*id]
+                .fields
+                .iter()
+                .map(|f| &*f.name)
+                .filter(|n| !n.contains('.'));
+            let prefix = if name.starts_with("set") {
+                "set"
+            } else {
+                "get"
+            };
+            let accessor = |field: &str| {
+                let mut letters = field.chars();
+                let first = letters
+                    .next()
+                    .map(|c| c.to_uppercase().to_string())
+                    .unwrap_or_default();
+                format!("{prefix}{first}{}", letters.as_str())
+            };
+            known.extend(visible.map(accessor));
+        }
+        let fault = self.did_you_mean(fault, name, known.iter().map(String::as_str));
+        self.report(fault);
+    }
+
+    /// The fault of a call of something unknown; `None` if it was refused before.
+    pub(super) fn unknown_function(&self, name: &str, span: Span) -> Option<Diagnostic> {
+        if self.refused.contains(name) || self.cx.this.is_some_and(|this| self.is_orphan(this)) {
+            return None;
+        }
+        if name == "apply" {
+            let fault = Diagnostic::error(
+                "bad-apply",
+                span,
+                "`apply(n)` can stand only in the head of a `for`",
+            );
+            return Some(fault.hint("write `for (apply(n)) …`"));
+        }
+        if let Some(hint) = super::refuse::function_hint(name) {
+            let message = format!("`{name}` is not supported");
+            return Some(Diagnostic::error("unsupported-function", span, message).hint(hint));
+        }
+        let fault = Diagnostic::error(
+            "unknown-function",
+            span,
+            format!("unknown function `{name}`"),
+        );
+        if self.node_type(name).is_some() {
+            return Some(
+                fault
+                    .label("this is a module")
+                    .hint(format!("write `new {name}(…)` outside of rules")),
+            );
+        }
+        if !library::functions_named("Math", name).is_empty() {
+            return Some(fault.hint(format!(
+                "write `Math.{name}(…)`, or begin the file with `import static java.lang.Math.*;`"
+            )));
+        }
+        let functions = FunctionId::ALL
+            .iter()
+            .map(|f| f.signature())
+            .filter(|row| row.owner.is_empty());
+        let known = self
+            .methods
+            .iter()
+            .map(|m| m.name)
+            .chain(functions.map(|row| row.name));
+        Some(self.did_you_mean(
+            fault.label("no such function"),
+            name,
+            known.chain(super::aggregate::NAMES.iter().copied()),
+        ))
     }
 }

@@ -13,7 +13,9 @@ mod body;
 mod call;
 mod coerce;
 mod constant;
+mod construct;
 mod context;
+mod declaration;
 mod declare;
 mod expr;
 mod member;
@@ -23,6 +25,7 @@ mod module;
 mod names;
 mod overload;
 mod pattern;
+mod positional;
 mod production;
 mod purity;
 mod refuse;
@@ -43,7 +46,7 @@ use crate::graph::{TypeId, TypeTable};
 use crate::syntax::ast;
 use crate::turtle;
 use context::{Body, Context, Facts};
-use declare::{FieldInfo, FileInfo, MethodInfo, ModuleInfo, StaticInfo};
+use declaration::{FieldInfo, FileInfo, MethodInfo, ModuleInfo, StaticInfo};
 use model::{Constant, MethodId, Model, StaticId};
 
 /// One file of a model.
@@ -105,7 +108,7 @@ impl<'a> Checker<'a> {
         Self {
             files: files.iter().map(FileInfo::new).collect(),
             n_builtin: types.len(),
-            fields: declare::builtin_fields(&types, node),
+            fields: declaration::builtin_fields(&types, node),
             types,
             node,
             modules: vec![],

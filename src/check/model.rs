@@ -29,7 +29,8 @@ pub struct Model {
     pub modules: Vec<Module>,
     /// All methods: of files, of modules.
     pub methods: Vec<Method>,
-    /// Fields of the files (variables of the model), all static in effect; initialized in this order.
+    /// Fields of the files (variables of the model), all static in effect; initialized in this order. An initializer
+    /// block of a file stands among them as the variable `{…}` of type `int`, which nothing reads.
     pub statics: Vec<Static>,
     /// `init`, if the model has one.
     pub init: Option<MethodId>,
@@ -46,7 +47,8 @@ pub struct Module {
     pub constructor: Constructor,
     /// The geometry made when the graph is traversed; slot 0 is the module's node.
     pub instantiation: Option<Instantiation>,
-    /// Methods by name resolution order are in [`Model::methods`]; this maps a virtual method to the override of this module.
+    /// From each method of a parent that is replaced here or in a module between to what replaces it: a virtual call
+    /// looks here, in the module of its receiver, and nowhere else.
     pub overrides: Vec<(MethodId, MethodId)>,
     /// Its declaration.
     pub span: Span,

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::context::{Body, Context, Local};
-use super::declare::MethodSource;
+use super::declaration::MethodSource;
 use super::model::{
     Constant, Constructor, Expr, ExprKind, Instantiation, MethodId, Module, NewNode, Place, Slot,
     Stmt, StmtKind, Type,

@@ -80,6 +80,7 @@ impl Checker<'_> {
             "Object" => Type::Object,
             _ => match self.node_type(name) {
                 Some(id) => Type::Node(id),
+                None if self.refused.contains(name) => return None,
                 None => Type::Class(ClassId::named(name)?),
             },
         })
@@ -87,10 +88,14 @@ impl Checker<'_> {
 
     /// The node type of this name: a module, else a built-in type.
     pub(super) fn node_type(&self, name: &str) -> Option<TypeId> {
-        self.module_names
-            .get(name)
-            .copied()
-            .or_else(|| self.types.find(name))
+        let builtin = || {
+            if self.refused.contains(name) {
+                None
+            } else {
+                self.types.find(name)
+            }
+        };
+        self.module_names.get(name).copied().or_else(builtin)
     }
 
     /// The field of this name that can be written in a model.

@@ -4,14 +4,13 @@ use std::collections::HashMap;
 
 use super::Checker;
 use super::context::Local;
-use super::model::{Expr, ExprKind, Slot, Type};
+use super::model::{Expr, Slot, Type};
 use super::names::Binding;
-use super::types::Fit;
 use crate::diag::{Diagnostic, Span};
+use crate::graph::TypeId;
 use crate::graph::pattern::{
-    Candidate, Condition, EdgeKind, EdgeWay, Pattern, PatternArg, PatternEdge, PatternNode,
+    Candidate, Condition, EdgeKind, EdgeWay, Pattern, PatternEdge, PatternNode,
 };
-use crate::graph::{FieldId, TypeId};
 use crate::syntax::ast::{self, EdgeDirection, PatternItem, PatternPart};
 
 /// Greatest number of a user's own edge kind.
@@ -26,7 +25,7 @@ pub(super) struct Checked {
 
 /// A pattern in the making.
 #[derive(Default)]
-struct Builder {
+pub(super) struct Builder {
     nodes: Vec<PatternNode<Expr>>,
     types: Vec<TypeId>,
     edges: Vec<PatternEdge>,
@@ -36,7 +35,7 @@ struct Builder {
     first: Option<usize>,
     last: Option<usize>,
     result: Option<usize>,
-    is_wrong: bool,
+    pub(super) is_wrong: bool,
 }
 
 /// Where in a pattern an item stands.
@@ -64,7 +63,7 @@ impl Checker<'_> {
                     self.path(&mut builder, items, at, &mut None, &mut None);
                 }
                 PatternPart::Condition(condition) => {
-                    conditions.extend(self.condition(&builder, condition))
+                    conditions.extend(self.condition(&builder, condition));
                 }
             }
         }
@@ -309,7 +308,7 @@ impl Checker<'_> {
     }
 
     /// A variable that pattern node `index` sets.
-    fn bind(
+    pub(super) fn bind(
         &mut self,
         builder: &mut Builder,
         name: &str,
@@ -365,7 +364,7 @@ impl Checker<'_> {
             let Type::Node(ty) = this.ty else { return None };
             return Some((Candidate::Value(this), ty));
         }
-        let is_local = self.cx.local_names().iter().any(|local| local == name);
+        let is_local = self.cx.has_local(name);
         if !is_local && let Some(id) = self.node_type(name) {
             return Some((Candidate::Type(id), id));
         }
@@ -395,99 +394,6 @@ impl Checker<'_> {
             return None;
         };
         Some((Candidate::Value(value), ty))
-    }
-
-    /// Positional parameters.
-    fn pattern_args(
-        &mut self,
-        builder: &mut Builder,
-        ty: TypeId,
-        args: &[Option<ast::Expr>],
-        span: Span,
-        index: usize,
-    ) -> Option<Vec<PatternArg<Expr>>> {
-        let params = self.positions(ty);
-        let is_module = usize::from(ty.0) >= self.n_builtin;
-        let n_given = args.len();
-        if n_given > params.len() || (is_module && n_given > 0 && n_given < params.len()) {
-            if self.is_orphan(ty) {
-                return None;
-            }
-            let name = self.types[ty].name.to_string();
-            let message = format!(
-                "`{name}` has {} parameters, the pattern gives {n_given}",
-                params.len()
-            );
-            let mut fault = Diagnostic::error("pattern-arguments", span, message);
-            if n_given < params.len() {
-                fault = fault.hint(format!(
-                    "leave gaps for the others: `{name}(x{})`",
-                    ",".repeat(params.len() - 1)
-                ));
-            }
-            self.report(fault);
-            return None;
-        }
-        let mut checked = vec![];
-        for (arg, &field) in args.iter().zip(&params) {
-            let Some(arg) = arg else { continue };
-            match self.pattern_arg(builder, ty, field, arg, index) {
-                Some(arg) => checked.push(arg),
-                None => builder.is_wrong = true,
-            }
-        }
-        Some(checked)
-    }
-
-    /// Fields that positional parameters stand for: of modules their parameters, of built-in types those of the longest constructor.
-    pub(super) fn positions(&self, ty: TypeId) -> Vec<FieldId> {
-        if let Some(module) = usize::from(ty.0).checked_sub(self.n_builtin) {
-            return self.modules[module].params.clone();
-        }
-        let constructors = crate::turtle::builtin(ty).map_or(&[][..], |row| row.constructors);
-        let longest = constructors
-            .iter()
-            .max_by_key(|fields| fields.len())
-            .copied()
-            .unwrap_or_default();
-        longest
-            .iter()
-            .filter_map(|name| self.types.field(ty, name))
-            .collect()
-    }
-
-    fn pattern_arg(
-        &mut self,
-        builder: &mut Builder,
-        ty: TypeId,
-        field: FieldId,
-        arg: &ast::Expr,
-        index: usize,
-    ) -> Option<PatternArg<Expr>> {
-        let field_ty = self.fields[usize::from(ty.0)]
-            .get(usize::from(field.0))?
-            .ty
-            .clone()?;
-        if let ast::ExprKind::Name(name) = &arg.kind
-            && name != "^"
-            && self.lookup(name, arg.span).is_none()
-        {
-            let slot = self.bind(builder, name, field_ty, index, arg.span);
-            return Some(PatternArg::Bind(field, slot.0));
-        }
-        let value = self.value(arg)?;
-        if self.fit(&value.ty, &field_ty) == Some(Fit::Direct) {
-            return Some(PatternArg::Equal(field, self.convert(value, &field_ty)));
-        }
-        let mut fault = self.mismatch(&value.ty, &field_ty, value.span);
-        if (&value.ty, &field_ty) == (&Type::Double, &Type::Float)
-            && matches!(value.kind, ExprKind::Constant(_))
-        {
-            fault.hints =
-                vec!["patterns compare exactly: write the number with an `f` at its end".into()];
-        }
-        self.report(fault);
-        None
     }
 }
 

@@ -174,7 +174,7 @@ impl Checker<'_> {
 
     /// A bare name: a label or a variable that holds a node, else a type.
     fn rhs_name(&mut self, name: &str, span: Span) -> Option<Expr> {
-        let is_local = self.cx.local_names().iter().any(|local| local == name);
+        let is_local = self.cx.has_local(name);
         if !is_local && let Some(id) = self.node_type(name) {
             return self.new_node(id, vec![], span);
         }

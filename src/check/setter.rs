@@ -58,12 +58,12 @@ impl Checker<'_> {
         let has = |hidden: &str| self.types.field(id, hidden).is_some();
         match name {
             "setTransform" | "setTranslation" if has("transform.x") => {
-                found.push(Accessor::SetAll(TRANSLATION))
+                found.push(Accessor::SetAll(TRANSLATION));
             }
             "setColor" if has("shader") => found.push(Accessor::SetColor),
             "getAxis" if has("width.full") => found.push(Accessor::GetAxis),
             "setOpen" if has("baseOpen") && has("topOpen") => {
-                found.push(Accessor::SetAll(&["baseOpen", "topOpen"]))
+                found.push(Accessor::SetAll(&["baseOpen", "topOpen"]));
             }
             _ => {}
         }

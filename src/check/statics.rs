@@ -4,7 +4,7 @@ use super::Checker;
 use super::coerce::int_constant;
 use super::constant;
 use super::context::{Body, Context};
-use super::declare::StaticSource;
+use super::declaration::StaticSource;
 use super::model::{Expr, ExprKind, Static, StaticId, Type};
 
 impl Checker<'_> {
