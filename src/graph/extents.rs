@@ -6,6 +6,7 @@
 use super::arena::NIL;
 use super::store::{Graph, Header};
 use super::{NodeId, Payload, TypeId};
+use std::cmp::Reverse;
 
 /// Nodes of exactly one type.
 #[derive(Clone, Debug, Default)]
@@ -83,6 +84,12 @@ impl<O: Payload> Graph<O> {
         types
             .flat_map(|&t| self.extents.exactly(t))
             .map(|index| self.id(index))
+    }
+
+    /// A number by which nodes of one [`Graph::extent`] are ordered as it lists them.
+    pub(crate) fn extent_order(&self, node: NodeId) -> (TypeId, Reverse<u32>) {
+        let header = &self.nodes[node.index()];
+        (header.type_id, Reverse(header.extent_place))
     }
 
     /// Number of nodes of a type and of those that extend it.

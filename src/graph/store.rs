@@ -108,7 +108,9 @@ impl<O: Payload> Graph<O> {
             stamp: 0,
             shape_stamp: 0,
         };
-        let ty = |name| graph.types.find(name).unwrap_or(TypeId(0));
+        // A module of the model may have the same name as a built-in type, which stands first.
+        let named = |name: &str| graph.types.iter().find(|(_, ty)| &*ty.name == name);
+        let ty = |name| named(name).map_or(TypeId(0), |(ty, _)| ty);
         let (root_type, axiom_type) = (ty("RGGRoot"), ty("Axiom"));
         graph.root = graph.create(root_type)?;
         graph.insert(graph.root)?;

@@ -65,9 +65,8 @@ impl Chains {
 impl<O: Payload> Queue<O> {
     /// Does all that is queued and ends the step. After an error the graph is in order, but the step is done in part.
     pub fn apply(&mut self, graph: &mut Graph<O>) -> Result<(), RewriteError> {
-        self.end_sequence();
         let result = self.apply_all(graph);
-        self.clear(graph);
+        self.clear_operations(graph);
         graph.end_of_step();
         result
     }

@@ -54,11 +54,7 @@ impl<'p> Path<'p> {
 
     /// Whether at most one edge is walked.
     pub(super) fn is_single(&self) -> bool {
-        let is_plain = !matches!(
-            self.edge.kind,
-            EdgeKind::Ancestor | EdgeKind::MinDescendants | EdgeKind::Descendants
-        );
-        is_plain && self.edge.repeat.1 == Some(1)
+        is_single_edge(self.edge)
     }
 
     /// Puts the first nodes of the path on `stack`, the one to visit first on top.
@@ -159,6 +155,15 @@ impl<'p> Path<'p> {
     }
 }
 
+/// Whether a pattern edge stands for at most one edge of the graph.
+pub(super) fn is_single_edge(edge: &PatternEdge) -> bool {
+    let is_nearest = matches!(
+        edge.kind,
+        EdgeKind::Ancestor | EdgeKind::MinDescendants | EdgeKind::Descendants
+    );
+    !is_nearest && edge.repeat.1 == Some(1)
+}
+
 /// Nodes that an endless path has met, so that it ends in graphs with rings.
 #[derive(Debug)]
 pub(super) struct Visited {
@@ -169,7 +174,8 @@ pub(super) struct Visited {
 
 impl Visited {
     pub(super) fn new<O: Payload>(graph: &Graph<O>, path: &Path<'_>) -> Self {
-        let is_needed = !path.is_single() && !graph.is_forest();
+        let is_one_way = matches!(path.way, EdgeWay::Forward | EdgeWay::Backward);
+        let is_needed = !path.is_single() && !(is_one_way && graph.is_forest());
         let n_left = if path.is_single() {
             usize::MAX
         } else {

@@ -15,6 +15,17 @@ pub struct Plan {
     pub(super) once: Vec<usize>,
     /// The type that pattern nodes must have, if one is given (by pattern node).
     pub(super) types: Vec<Option<TypeId>>,
+    /// How each node is found, by pattern node: by which edge, and whether against it. `None` if it is a start.
+    pub(super) via: Vec<Option<Via>>,
+}
+
+/// How a pattern node is found from another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Via {
+    pub(super) edge: usize,
+    pub(super) is_reversed: bool,
+    /// The pattern node it is found from.
+    pub(super) from: usize,
 }
 
 /// One step of a search.
@@ -34,7 +45,7 @@ impl Plan {
     /// Plans a search.
     ///
     /// Connected parts of the pattern are searched one inside the other: first those with a node that is known
-    /// beforehand, then the others from the last to the first. Within a part the search begins at the known node, else
+    /// beforehand, then the others from the last to the first. Within a part the search begins at the known nodes, else
     /// at the first, and follows the edges as they are written. A condition is evaluated as soon as the nodes up to the
     /// last one it needs are found.
     pub fn new<E>(pattern: &Pattern<E>) -> Self {
@@ -54,12 +65,18 @@ impl Plan {
             )
         };
         let own = |&node: &usize| meant[node] == node;
-        let known = (0..pattern.nodes.len()).filter(own).filter(is_known);
-        let starts: Vec<usize> = known.chain(planner.starts_of_other_parts()).collect();
-        for start in starts {
-            planner.add_part(start);
+        for node in (0..pattern.nodes.len()).filter(own).filter(is_known) {
+            planner.bind(node, Step::Start(node));
+        }
+        planner.follow_edges();
+        for start in planner.starts_of_parts() {
+            if !planner.is_bound[start] {
+                planner.bind(start, Step::Start(start));
+                planner.follow_edges();
+            }
         }
         let steps = planner.steps;
+        let via = vias(pattern, &meant, &steps);
         let type_of = |&node: &usize| match pattern.nodes[node].what {
             Candidate::Type(ty) => Some(ty),
             Candidate::Any | Candidate::Root | Candidate::Value(_) | Candidate::Same(_) => None,
@@ -76,8 +93,31 @@ impl Plan {
             may_coincide,
             once,
             types,
+            via,
         }
     }
+}
+
+/// How each pattern node is found, from the steps that find it.
+fn vias<E>(pattern: &Pattern<E>, meant: &[usize], steps: &[Step]) -> Vec<Option<Via>> {
+    let mut via = vec![None; pattern.nodes.len()];
+    for step in steps {
+        if let Step::Follow { edge, is_reversed } = *step {
+            let ends = &pattern.edges[edge];
+            let (left, right) = (meant[ends.from], meant[ends.to]);
+            let (from, to) = if is_reversed {
+                (right, left)
+            } else {
+                (left, right)
+            };
+            via[to] = Some(Via {
+                edge,
+                is_reversed,
+                from,
+            });
+        }
+    }
+    via
 }
 
 /// Follows labels that are used again to the node they stand for.
@@ -104,7 +144,7 @@ struct Planner<'a, E> {
 
 impl<E> Planner<'_, E> {
     /// First nodes of the connected parts, last part first.
-    fn starts_of_other_parts(&self) -> Vec<usize> {
+    fn starts_of_parts(&self) -> Vec<usize> {
         let n = self.pattern.nodes.len();
         let mut part: Vec<usize> = (0..n).map(|i| self.meant[i]).collect();
         for _ in 0..n {
@@ -120,11 +160,7 @@ impl<E> Planner<'_, E> {
         (0..n).rev().filter(|&i| part[i] == i).collect()
     }
 
-    fn add_part(&mut self, start: usize) {
-        if self.is_bound[start] {
-            return;
-        }
-        self.bind(start, Step::Start(start));
+    fn follow_edges(&mut self) {
         while let Some((edge, is_reversed)) = self.next_edge() {
             self.is_edge_done[edge] = true;
             let PatternEnds { from, to } = self.ends(edge);

@@ -1,5 +1,6 @@
 //! The right-hand side of a match: which nodes and edges it asks for.
 
+use super::path::is_single_edge;
 use super::plan::Plan;
 use super::queue::{Connection, EdgeRequest, Queue};
 use crate::check::model::Arrow;
@@ -126,11 +127,7 @@ impl Frame {
             Some(Arrow::Spo) => n_context == 2,
             Some(Arrow::Lindenmayer | Arrow::Execution) | None => n_context > 0,
         };
-        let is_nearest = matches!(
-            edge.kind,
-            EdgeKind::Ancestor | EdgeKind::MinDescendants | EdgeKind::Descendants
-        );
-        if stays || is_nearest || edge.repeat != (1, Some(1)) {
+        if stays || !is_single_edge(edge) || edge.repeat.0 == 0 {
             return;
         }
         let bits = EdgeBits::of(edge.kind);

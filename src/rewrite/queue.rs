@@ -142,9 +142,14 @@ impl<O: Payload> Queue<O> {
         self.assignments.push(assignment);
     }
 
-    /// Forgets all that is queued; new nodes are freed.
+    /// Forgets all that is queued, and right-hand sides under way; new nodes are freed.
     pub fn clear(&mut self, graph: &mut Graph<O>) {
         self.depth = 0;
+        self.clear_operations(graph);
+    }
+
+    /// Forgets all that is queued; right-hand sides under way go on.
+    pub(super) fn clear_operations(&mut self, graph: &mut Graph<O>) {
         self.reset_to(Mark([0; 7]), graph);
         self.assignments.clear();
         self.chosen = None;
@@ -182,10 +187,6 @@ impl<O: Payload> Queue<O> {
         self.new_edges.truncate(new_edges);
         self.new_undirected.truncate(new_undirected);
         self.dead_edges.truncate(dead_edges);
-    }
-
-    pub(super) fn end_sequence(&mut self) {
-        self.chosen = None;
     }
 
     /// Notes a new node that something will lead to; its place in the extent is the order of these notes.

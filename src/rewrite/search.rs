@@ -1,6 +1,6 @@
 //! Finding the matches of a pattern.
 
-use super::path::{Open, Path, Visit, Visited};
+use super::path::{Open, Path, Visit, Visited, is_single_edge};
 use super::plan::{Plan, Step};
 use crate::graph::pattern::{Candidate, Pattern, PatternArg};
 use crate::graph::{FieldId, Graph, GraphError, NodeId, Payload, TypeId};
@@ -157,7 +157,11 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
                     Some(_) | None => Ok(Flow::Continue),
                 };
             }
-            Candidate::Type(ty) => self.open_extent(*ty),
+            Candidate::Type(ty) => {
+                if !self.open_from_rare_end(node, *ty) {
+                    self.open_extent(*ty);
+                }
+            }
             // All types extend the first one.
             Candidate::Any | Candidate::Same(_) => self.open_extent(TypeId(0)),
         }
@@ -176,6 +180,70 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         self.scratch
             .open
             .extend(self.env.graph().extent(ty).map(|node| (node, 0)));
+    }
+
+    /// Takes as candidates only nodes of type `ty` from which a rare node of the pattern can be reached by its edges; `false`
+    /// if no node is much rarer. The order stays that of the extent.
+    fn open_from_rare_end(&mut self, start: usize, ty: TypeId) -> bool {
+        let Some(rare) = self.rare_end(start, ty) else {
+            return false;
+        };
+        let base = self.scratch.open.len();
+        let graph = self.env.graph();
+        let open = &mut self.scratch.open;
+        if let Some(ty) = self.plan.types[rare] {
+            open.extend(graph.extent(ty).map(|node| (node, 0)));
+        }
+        let mut at = rare;
+        while let Some(via) = self.plan.via[at] {
+            let (path, _, _) = path(self.pattern, self.plan, via.edge, !via.is_reversed);
+            let wanted = self.plan.types[via.from];
+            let end = open.len();
+            for i in base..end {
+                path.begin(graph, open[i].0, open);
+            }
+            open.drain(base..end);
+            let fits = |node| wanted.is_none_or(|ty| graph.is_a(node, ty));
+            let mut kept = base;
+            for i in base..open.len() {
+                if fits(open[i].0) {
+                    open[kept] = open[i];
+                    kept += 1;
+                }
+            }
+            open.truncate(kept);
+            at = via.from;
+        }
+        open[base..].sort_unstable_by_key(|&(node, _)| graph.extent_order(node));
+        let mut kept = base;
+        for i in base..open.len() {
+            if kept == base || open[kept - 1].0 != open[i].0 {
+                open[kept] = open[i];
+                kept += 1;
+            }
+        }
+        open.truncate(kept);
+        true
+    }
+
+    /// The pattern node of the rarest type among those that single edges join to `start`, if it is much rarer than `ty`.
+    fn rare_end(&self, start: usize, ty: TypeId) -> Option<usize> {
+        let is_joined = |&node: &usize| {
+            let mut at = node;
+            while let Some(via) = self.plan.via[at] {
+                let edge = &self.pattern.edges[via.edge];
+                if !is_single_edge(edge) || edge.repeat.0 == 0 {
+                    return false;
+                }
+                at = via.from;
+            }
+            at == start && node != start
+        };
+        let graph = self.env.graph();
+        let typed = (0..self.plan.via.len()).filter(is_joined);
+        let counted = typed.filter_map(|node| Some((graph.count(self.plan.types[node]?), node)));
+        let (count, rare) = counted.min()?;
+        (count.saturating_mul(MUCH_RARER) < graph.count(ty)).then_some(rare)
     }
 
     fn follow(&mut self, edge: usize, is_reversed: bool, at: usize) -> Result<Flow, M::Error> {
@@ -209,18 +277,8 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         path.reaches(self.env.graph(), from, to, &mut self.scratch.open)
     }
 
-    /// The path along a pattern edge, with the pattern nodes it leads from and to.
     fn path(&self, edge: usize, is_reversed: bool) -> (Path<'a>, usize, usize) {
-        let pattern = self.pattern;
-        let edge = &pattern.edges[edge];
-        let types = &self.plan.types;
-        let path = Path::new(edge, is_reversed, types[edge.from], types[edge.to]);
-        let (left, right) = (self.plan.meant[edge.from], self.plan.meant[edge.to]);
-        if is_reversed {
-            (path, right, left)
-        } else {
-            (path, left, right)
-        }
+        path(self.pattern, self.plan, edge, is_reversed)
     }
 
     /// Tries a node of the graph for a pattern node, then the rest of the plan.
@@ -285,5 +343,30 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             }
         }
         Ok(true)
+    }
+}
+
+/// A search begins at the other end of an edge if the nodes there are so many times fewer.
+const MUCH_RARER: usize = 8;
+
+/// The path along a pattern edge, with the pattern nodes it leads from and to.
+fn path<'p, E>(
+    pattern: &'p Pattern<E>,
+    plan: &Plan,
+    edge: usize,
+    is_reversed: bool,
+) -> (Path<'p>, usize, usize) {
+    let edge = &pattern.edges[edge];
+    let path = Path::new(
+        edge,
+        is_reversed,
+        plan.types[edge.from],
+        plan.types[edge.to],
+    );
+    let (left, right) = (plan.meant[edge.from], plan.meant[edge.to]);
+    if is_reversed {
+        (path, right, left)
+    } else {
+        (path, left, right)
     }
 }

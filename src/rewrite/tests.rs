@@ -1,6 +1,7 @@
 //! GroIMP's own results (golden models 10, 11, 13, 14, 16, 17, 19, 20, 25, 29, 49) on rules written as text.
 //!
-//! A tiny stand-in for the language: letters with one int, `x*10+y` as expressions, `(x > 4)` as conditions.
+//! A tiny stand-in for the language: letters with one int, `x*10+y` as expressions, `(x > 4)` as conditions, `$A` for the
+//! first A as a known node.
 
 use super::*;
 use crate::check::model::Arrow;
@@ -169,7 +170,9 @@ impl World {
                     let needs = Some(pattern.nodes.len() - 1);
                     pattern.conditions.push(Condition { expr, needs });
                 }
-                operator if !operator.starts_with(|c: char| c.is_alphabetic() || c == '^') => {
+                operator
+                    if !operator.starts_with(|c: char| c.is_alphabetic() || "^$".contains(c)) =>
+                {
                     edge = Some(edge_of(operator));
                 }
                 node => {
@@ -211,6 +214,7 @@ impl World {
             .position(|n| earlier.is_some() && n.slot == earlier);
         let what = match same {
             _ if name == "^" => Candidate::Root,
+            _ if name.starts_with('$') => Candidate::Value(name[1..].to_owned()),
             Some(same) => Candidate::Same(same),
             None => Candidate::Type(testing::type_named(&self.graph, name)),
         };
@@ -316,8 +320,9 @@ impl MatchEnv<Expr> for World {
         Ok(self.holds(condition))
     }
 
-    fn node_value(&mut self, _: &Expr) -> Result<Option<NodeId>, RewriteError> {
-        Ok(None)
+    fn node_value(&mut self, name: &Expr) -> Result<Option<NodeId>, RewriteError> {
+        let ty = testing::type_named(&self.graph, name);
+        Ok(self.graph.extent(ty).next())
     }
 }
 
@@ -373,6 +378,10 @@ fn edge_of(text: &str) -> PatternEdge {
         "(-->)?" => closure((0, Some(1))),
         "(-->){2}" => closure((2, Some(2))),
         "(-->){1,3}" => closure((1, Some(3))),
+        "(--)+" => PatternEdge {
+            way: EdgeWay::Undirected,
+            ..closure((1, None))
+        },
         "(<--)+" => PatternEdge {
             way: EdgeWay::Backward,
             ..closure((1, None))
@@ -687,4 +696,109 @@ fn a_long_run_does_not_leak() {
     }
     assert_eq!(memory[4], memory[19]);
     assert_eq!(world.graph.n_nodes(), 2 + 4);
+}
+
+#[test]
+fn known_nodes_are_all_respected() {
+    let mut world = World::new("S A(1) [C(9)] B(2) B(3)");
+    assert_eq!(world.query("$A > b:$B"), "2");
+    assert_eq!(world.query("$A b:$C"), "");
+    assert_eq!(world.query("$A [b:$C]"), "9");
+    assert_eq!(world.query("B < b:$B"), "2");
+    assert_eq!(world.query("b:$E"), "");
+}
+
+#[test]
+fn a_walk_both_ways_ends() {
+    let mut world = World::new("S A(1) [B(2) B(3)] B(4)");
+    assert_eq!(world.query("A (--)+ b:B"), "2 3 4");
+}
+
+#[test]
+fn the_order_of_matches_does_not_depend_on_where_the_search_begins() {
+    let chain: String = (1..=30).map(|i| format!("A({i}) ")).collect();
+    let mut world = World::new(&format!("S {chain}"));
+    for (at, value) in [(20, 1), (3, 2), (11, 3)] {
+        world
+            .step(&[&format!("a:A, (a == {at}) ==> a [B({value})]")])
+            .expect("no errors");
+    }
+    assert_eq!(world.query("b:B"), "3 2 1");
+    assert_eq!(world.query("A +> b:B"), "2 3 1");
+    assert_eq!(world.query("A A [b:B]"), "2 3 1");
+    assert_eq!(world.query("b:A --> B"), "3 11 20");
+}
+
+#[test]
+fn nodes_of_the_newest_step_come_first() {
+    let mut world = World::new("S A(1) A(2) A(3)");
+    world.step(&["A(2) ==> A(8) A(9)"]).expect("no errors");
+    assert_eq!(world.query("b:A"), "8 9 1 3");
+}
+
+#[test]
+fn a_step_may_end_inside_a_right_hand_side() {
+    let mut world = World::new("S A(1)");
+    let plan_of = |world: &mut World| {
+        let pattern = world.pattern("A", false);
+        (Plan::new(&pattern), pattern)
+    };
+    let (plan, pattern) = plan_of(&mut world);
+    let a = world
+        .graph
+        .extent(testing::type_named(&world.graph, "A"))
+        .next()
+        .expect("one");
+    let World { graph, queue, .. } = &mut world;
+    queue.begin(graph, &pattern, &plan, Arrow::Lindenmayer, &[a]);
+    let b = new_node(graph, "B(2)").expect("room");
+    queue.node(graph, b).expect("exists");
+    queue.apply(graph).expect("no errors");
+    let c = new_node(graph, "C(3)").expect("room");
+    queue.node(graph, c).expect("exists");
+    queue.end(graph);
+    queue.apply(graph).expect("no errors");
+    assert_eq!(world.show(), "SB2C3");
+}
+
+#[test]
+fn a_right_hand_side_that_fails_leaves_nothing() {
+    let mut world = World::new("S A(1)");
+    let pattern = world.pattern("A", false);
+    let plan = Plan::new(&pattern);
+    let a = world
+        .graph
+        .extent(testing::type_named(&world.graph, "A"))
+        .next()
+        .expect("one");
+    world
+        .queue
+        .begin(&world.graph, &pattern, &plan, Arrow::Lindenmayer, &[a]);
+    world.queue.abort();
+    assert!(world.queue.is_empty());
+    world.step(&[]).expect("no errors");
+    assert_eq!(world.show(), "SA1");
+}
+
+#[test]
+fn an_instantiation_body_is_linked_apart_from_the_graph() {
+    let mut world = World::new("S A(1)");
+    let stamp = world.graph.stamp();
+    let before = world.graph.n_nodes();
+    let shape = world.graph.shape_stamp();
+    world.queue.begin_instantiation();
+    for text in ["B(1)", "C(2)"] {
+        let node = new_node(&mut world.graph, text).expect("room");
+        world.queue.node(&mut world.graph, node).expect("exists");
+        world.queue.push();
+    }
+    let mut made = world.queue.end_instantiation();
+    assert_eq!((made.heads.len(), made.nodes.len()), (1, 2));
+    let child = world.graph.out_edges(made.nodes[0]).next().expect("linked");
+    assert_eq!(child, (made.nodes[1], crate::graph::EdgeBits::BRANCH));
+    world.queue.free_instantiated(&mut world.graph, &mut made);
+    assert_eq!(world.graph.n_nodes(), before);
+    assert_ne!(world.graph.stamp(), stamp);
+    assert_eq!(world.graph.shape_stamp(), shape);
+    assert_eq!(world.graph.validate(), Ok(()));
 }
