@@ -1,1 +1,4 @@
-//! (to be written)
+//! Compiles a checked model into closures and runs them.
+
+pub mod decimal;
+pub mod random;
