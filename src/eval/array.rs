@@ -1,0 +1,127 @@
+//! Arrays: fixed length, shared by reference, numbers stored unboxed.
+//!
+//! Elements are relaxed atomics, which cost no more than plain memory: values can be shared between threads that read a
+//! grown model, while the language itself runs on one.
+
+use std::sync::atomic::{AtomicI8, AtomicI16, AtomicI32, AtomicI64, AtomicU16, AtomicU32, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::memory::Charge;
+use super::value::Value;
+
+/// An array of the language.
+#[derive(Debug)]
+pub struct Array {
+    elements: Elements,
+    _charge: Charge,
+}
+
+/// What an array holds.
+#[derive(Debug)]
+#[allow(missing_docs, reason = "the names are Java's own")]
+pub enum Elements {
+    Boolean(Box<[AtomicI8]>),
+    Byte(Box<[AtomicI8]>),
+    Short(Box<[AtomicI16]>),
+    Char(Box<[AtomicU16]>),
+    Int(Box<[AtomicI32]>),
+    Long(Box<[AtomicI64]>),
+    Float(Box<[AtomicU32]>),
+    Double(Box<[AtomicU64]>),
+    /// Texts, nodes, arrays, objects.
+    Reference(Box<[Mutex<Value>]>),
+}
+
+impl Array {
+    /// An array that carries its share of the memory budget.
+    pub fn new(elements: Elements, charge: Charge) -> Self {
+        Self { elements, _charge: charge }
+    }
+
+    /// What it holds.
+    pub fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        match &self.elements {
+            Elements::Boolean(e) | Elements::Byte(e) => e.len(),
+            Elements::Short(e) => e.len(),
+            Elements::Char(e) => e.len(),
+            Elements::Int(e) => e.len(),
+            Elements::Long(e) => e.len(),
+            Elements::Float(e) => e.len(),
+            Elements::Double(e) => e.len(),
+            Elements::Reference(e) => e.len(),
+        }
+    }
+
+    /// Whether it has no elements.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The element, boxed.
+    pub fn get(&self, index: usize) -> Option<Value> {
+        Some(match &self.elements {
+            Elements::Boolean(e) => Value::Boolean(e.get(index)?.load(Ordering::Relaxed) != 0),
+            Elements::Byte(e) => Value::Byte(e.get(index)?.load(Ordering::Relaxed)),
+            Elements::Short(e) => Value::Short(e.get(index)?.load(Ordering::Relaxed)),
+            Elements::Char(e) => Value::Char(e.get(index)?.load(Ordering::Relaxed)),
+            Elements::Int(e) => Value::Int(e.get(index)?.load(Ordering::Relaxed)),
+            Elements::Long(e) => Value::Long(e.get(index)?.load(Ordering::Relaxed)),
+            Elements::Float(e) => Value::Float(f32::from_bits(e.get(index)?.load(Ordering::Relaxed))),
+            Elements::Double(e) => Value::Double(f64::from_bits(e.get(index)?.load(Ordering::Relaxed))),
+            Elements::Reference(e) => e.get(index)?.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+        })
+    }
+
+    /// Java's name of its type, as printed for a reference.
+    pub fn type_name(&self) -> &'static str {
+        match self.elements {
+            Elements::Boolean(_) => "boolean[]",
+            Elements::Byte(_) => "byte[]",
+            Elements::Short(_) => "short[]",
+            Elements::Char(_) => "char[]",
+            Elements::Int(_) => "int[]",
+            Elements::Long(_) => "long[]",
+            Elements::Float(_) => "float[]",
+            Elements::Double(_) => "double[]",
+            Elements::Reference(_) => "Object[]",
+        }
+    }
+}
+
+impl Elements {
+    /// `n` zeros, falses or nulls of the same kind as `self`.
+    #[must_use]
+    pub fn zeros_like(&self, n: usize) -> Self {
+        match self {
+            Self::Boolean(_) => Self::Boolean(filled(n)),
+            Self::Byte(_) => Self::Byte(filled(n)),
+            Self::Short(_) => Self::Short(filled(n)),
+            Self::Char(_) => Self::Char(filled(n)),
+            Self::Int(_) => Self::Int(filled(n)),
+            Self::Long(_) => Self::Long(filled(n)),
+            Self::Float(_) => Self::Float(filled(n)),
+            Self::Double(_) => Self::Double(filled(n)),
+            Self::Reference(_) => Self::Reference(filled(n)),
+        }
+    }
+
+    /// Bytes that one element takes.
+    pub fn element_bytes(&self) -> usize {
+        match self {
+            Self::Boolean(_) | Self::Byte(_) => 1,
+            Self::Short(_) | Self::Char(_) => 2,
+            Self::Int(_) | Self::Float(_) => 4,
+            Self::Long(_) | Self::Double(_) => 8,
+            Self::Reference(_) => size_of::<Mutex<Value>>(),
+        }
+    }
+}
+
+fn filled<T: Default>(n: usize) -> Box<[T]> {
+    std::iter::repeat_with(T::default).take(n).collect()
+}

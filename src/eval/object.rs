@@ -1,0 +1,238 @@
+//! Library objects: vectors, shaders, lights, collections, exceptions and the like.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use glam::DVec3;
+
+use super::decimal::{java_double_to_string, java_float_to_string};
+use super::map::JavaMap;
+use super::memory::Charge;
+use super::random::JavaRandom;
+use super::text::Text;
+use super::value::Value;
+use crate::library::ClassId;
+
+/// An object of a library class.
+#[derive(Debug)]
+pub struct Object {
+    /// Its class.
+    pub class: ClassId,
+    data: Mutex<Data>,
+}
+
+/// What a library object holds.
+#[derive(Clone, Debug)]
+pub enum Data {
+    /// A point, a vector, a spectrum.
+    Tuple(DVec3),
+    /// A colour map; linear red, green, blue.
+    Color([f64; 3]),
+    /// An `RGBAShader`: red, green, blue, alpha.
+    Shader([f32; 4]),
+    /// A `Phong` shader.
+    Phong(Box<Phong>),
+    /// A source of light.
+    Light(Light),
+    /// A light model.
+    LightModel(LightModel),
+    /// A generator of its own.
+    Random(Box<JavaRandom>),
+    /// A list.
+    List(List),
+    /// A map.
+    Map(Box<JavaMap>),
+    /// A `StringBuffer` or `StringBuilder`.
+    Buffer(String),
+    /// Something thrown.
+    Throwable(Option<Arc<Text>>),
+}
+
+/// Elements of a list, and the share of the memory budget they take.
+#[derive(Debug, Default)]
+pub struct List {
+    /// The elements.
+    pub values: Vec<Value>,
+    /// What they take.
+    pub charge: Charge,
+}
+
+impl Clone for List {
+    fn clone(&self) -> Self {
+        Self { values: self.values.clone(), charge: Charge::none() }
+    }
+}
+
+/// What a `Phong` shader was given; linear red, green, blue.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names are those of its setters")]
+pub struct Phong {
+    pub diffuse: [f64; 3],
+    pub diffuse_transparency: [f64; 3],
+    pub specular: [f64; 3],
+    pub transparency: [f64; 3],
+    pub emissive: [f64; 3],
+    pub ambient: [f64; 3],
+    /// Exponent of the gloss.
+    pub shininess: f64,
+}
+
+impl Default for Phong {
+    fn default() -> Self {
+        let black = [0.0; 3];
+        Self {
+            diffuse: [0.5; 3],
+            diffuse_transparency: black,
+            specular: black,
+            transparency: black,
+            emissive: black,
+            ambient: black,
+            shininess: 0.5,
+        }
+    }
+}
+
+/// A source of light as the model described it; its class says which kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Red, green, blue of the light.
+    pub color: [f32; 3],
+    /// Watts (point, spot, area) or watts per square metre (directional, sky), summed over red, green and blue.
+    pub power: f32,
+    /// Half angle of a spot's full brightness, radians.
+    pub inner_angle: f32,
+    /// Half angle of a spot's cone, radians.
+    pub outer_angle: f32,
+    /// Exponent of the cosine by which an area shines.
+    pub exponent: f32,
+}
+
+impl Light {
+    /// White light of this power; spots with GroIMP's cone.
+    pub fn new(power: f32) -> Self {
+        let degrees = |d: f32| d / 180.0 * std::f32::consts::PI;
+        let (inner_angle, outer_angle) = (degrees(22.5), degrees(30.0));
+        Self { color: [1.0; 3], power, inner_angle, outer_angle, exponent: 1.0 }
+    }
+}
+
+/// Settings of a light model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightModel {
+    /// Number of rays.
+    pub rays: i32,
+    /// Greatest number of reflections.
+    pub depth: i32,
+    /// Seed of its generator.
+    pub seed: i64,
+}
+
+impl Object {
+    /// A new object.
+    pub fn new(class: ClassId, data: Data) -> Self {
+        Self { class, data: Mutex::new(data) }
+    }
+
+    /// Access to what it holds. Never hold it while anything else is evaluated: the same object may be asked again.
+    pub fn lock(&self) -> MutexGuard<'_, Data> {
+        self.data.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The coordinates of a tuple (or of a colour); `None` for other objects.
+    pub fn tuple(&self) -> Option<DVec3> {
+        match &*self.lock() {
+            Data::Tuple(v) => Some(*v),
+            _ => None,
+        }
+    }
+
+    /// `equals` for two different objects.
+    pub fn equals(a: &Arc<Self>, b: &Arc<Self>) -> bool {
+        let (left, right) = (a.lock().clone(), b.lock().clone());
+        match (left, right) {
+            (Data::Tuple(a), Data::Tuple(b)) => a == b,
+            (Data::Color(a), Data::Color(b)) => a == b,
+            (Data::Shader(a), Data::Shader(b)) => a == b,
+            (Data::List(a), Data::List(b)) => {
+                a.values.len() == b.values.len() && a.values.iter().zip(&b.values).all(|(a, b)| a.equals(b))
+            }
+            _ => false,
+        }
+    }
+
+    /// A number that equal objects share.
+    pub fn hash_code(&self) -> i32 {
+        match &*self.lock() {
+            Data::Tuple(v) => v.to_array().iter().fold(1, |hash, x| {
+                let bits = if *x == 0.0 { 0 } else { x.to_bits() };
+                hash.wrapping_mul(31).wrapping_add((bits ^ (bits >> 32)) as i32)
+            }),
+            Data::List(list) => list.values.len() as i32,
+            _ => 1,
+        }
+    }
+
+    /// Appends its text, as its `toString()` gives it.
+    pub fn append_to(&self, out: &mut String) {
+        let name = self.class.name();
+        let data = self.lock().clone();
+        match data {
+            Data::Tuple(v) => push_all(out, ["(", ")"], v.to_array().map(java_double_to_string)),
+            Data::Color(c) => push_all(out, ["(", ")"], c.map(java_double_to_string)),
+            Data::Shader(c) => push_all(out, ["(", ")"], c.map(java_float_to_string)),
+            Data::List(list) => push_all(out, ["[", "]"], list.values.iter().map(Value::to_string)),
+            Data::Map(map) => {
+                push_all(out, ["{", "}"], map.entries().map(|(key, value)| format!("{key}={value}")));
+            }
+            Data::Buffer(text) => out.push_str(&text),
+            Data::Throwable(message) => {
+                out.push_str(&qualified(self.class));
+                if let Some(message) = message {
+                    out.push_str(": ");
+                    out.push_str(message.as_str());
+                }
+            }
+            Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => out.push_str(name),
+        }
+    }
+}
+
+fn push_all(out: &mut String, [open, close]: [&str; 2], parts: impl IntoIterator<Item = String>) {
+    out.push_str(open);
+    for (i, part) in parts.into_iter().enumerate() {
+        if i > 0 {
+            out.push_str(", ");
+        }
+        out.push_str(&part);
+    }
+    out.push_str(close);
+}
+
+/// Java's full name of a class that can be thrown.
+pub fn qualified(class: ClassId) -> String {
+    let package = if class == ClassId::IOException { "java.io" } else { "java.lang" };
+    format!("{package}.{}", class.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_print_as_in_java() {
+        let text = |class, data| Value::Object(Arc::new(Object::new(class, data))).to_string();
+        assert_eq!(text(ClassId::Vector3d, Data::Tuple(DVec3::new(1.0, 0.0, -2.5))), "(1.0, 0.0, -2.5)");
+        let list = List { values: vec![Value::Int(3), Value::text("x")], charge: Charge::none() };
+        assert_eq!(text(ClassId::ArrayList, Data::List(list)), "[3, x]");
+        let message = Some(Arc::new(Text::new("/ by zero", Charge::none())));
+        let thrown = text(ClassId::ArithmeticException, Data::Throwable(message));
+        assert_eq!(thrown, "java.lang.ArithmeticException: / by zero");
+    }
+
+    #[test]
+    fn tuples_are_equal_by_value() {
+        let point = |x| Arc::new(Object::new(ClassId::Point3d, Data::Tuple(DVec3::new(x, 0.0, 0.0))));
+        assert!(Object::equals(&point(1.0), &point(1.0)));
+        assert!(!Object::equals(&point(1.0), &point(2.0)));
+        assert_eq!(point(0.0).hash_code(), point(-0.0).hash_code());
+    }
+}
