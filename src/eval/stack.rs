@@ -8,17 +8,17 @@ use crate::graph::NodeId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Local {
     /// In the words, at this offset.
-    Word(u16),
+    Word(u32),
     /// In the values, at this offset.
-    Value(u16),
+    Value(u32),
 }
 
 /// How the slots of a frame are laid out.
 #[derive(Clone, Debug, Default)]
 pub struct Layout {
     locals: Vec<Local>,
-    n_words: u16,
-    n_values: u16,
+    n_words: u32,
+    n_values: u32,
 }
 
 impl Layout {
@@ -36,7 +36,24 @@ impl Layout {
 
     /// Where a slot lives.
     pub fn local(&self, slot: Slot) -> Local {
-        self.locals.get(usize::from(slot.0)).copied().expect("invariant: slots are numbered by the checker")
+        self.local_at(usize::from(slot.0))
+    }
+
+    /// Where the variable with this number lives.
+    pub fn local_at(&self, index: usize) -> Local {
+        self.locals.get(index).copied().expect("invariant: slots are numbered by the checker")
+    }
+
+    /// Number of words and of values.
+    pub fn size(&self) -> (u32, u32) {
+        (self.n_words, self.n_values)
+    }
+
+    /// The same slots with room for temporaries behind them.
+    #[must_use]
+    pub fn with_size(mut self, n_words: u32, n_values: u32) -> Self {
+        (self.n_words, self.n_values) = (n_words, n_values);
+        self
     }
 }
 
@@ -96,8 +113,8 @@ impl Stack {
     /// Makes a frame current whose first variables (the arguments) were pushed since `mark`; the rest begins as zero.
     pub fn enter(&mut self, mark: Mark, layout: &Layout) {
         (self.word_base, self.value_base) = (mark.n_words, mark.n_values);
-        self.words.resize(mark.n_words + usize::from(layout.n_words), 0);
-        self.values.resize(mark.n_values + usize::from(layout.n_values), Value::Null);
+        self.words.resize(mark.n_words + layout.n_words as usize, 0);
+        self.values.resize(mark.n_values + layout.n_values as usize, Value::Null);
         self.depth += 1;
     }
 
@@ -115,53 +132,57 @@ impl Stack {
 
     /// The word at `offset` of the current frame.
     #[inline]
-    pub fn word(&self, offset: u16) -> u64 {
-        self.words[self.word_base + usize::from(offset)]
+    pub fn word(&self, offset: u32) -> u64 {
+        self.words[self.word_base + offset as usize]
     }
 
     /// Sets the word at `offset` of the current frame.
     #[inline]
-    pub fn set_word(&mut self, offset: u16, word: u64) {
-        self.words[self.word_base + usize::from(offset)] = word;
+    pub fn set_word(&mut self, offset: u32, word: u64) {
+        self.words[self.word_base + offset as usize] = word;
     }
 
     /// The value at `offset` of the current frame.
     #[inline]
-    pub fn value(&self, offset: u16) -> &Value {
-        &self.values[self.value_base + usize::from(offset)]
+    pub fn value(&self, offset: u32) -> &Value {
+        &self.values[self.value_base + offset as usize]
     }
 
     /// Sets the value at `offset` of the current frame.
     #[inline]
-    pub fn set_value(&mut self, offset: u16, value: Value) {
-        self.values[self.value_base + usize::from(offset)] = value;
+    pub fn set_value(&mut self, offset: u32, value: Value) {
+        self.values[self.value_base + offset as usize] = value;
     }
 }
 
 /// A type of Rust that variables of the language are computed in.
 pub trait Kind: Clone + Default + Send + Sync + 'static {
     /// Reads a local variable of the current frame.
-    fn load(stack: &Stack, offset: u16) -> Self;
+    fn load(stack: &Stack, offset: u32) -> Self;
     /// Writes a local variable of the current frame.
-    fn store(self, stack: &mut Stack, offset: u16);
+    fn store(self, stack: &mut Stack, offset: u32);
     /// Pushes an argument.
     fn push(self, stack: &mut Stack);
     /// Takes the result of the method that returned last.
     fn take_result(stack: &mut Stack) -> Self;
     /// Leaves the result of a method.
     fn leave_result(self, stack: &mut Stack);
+    /// The variable at `offset` of a frame that is no part of the stack.
+    fn read_from(words: &[u64], values: &[Value], offset: u32) -> Self;
+    /// Writes the variable at `offset` of a frame that is no part of the stack.
+    fn write_to(self, words: &mut [u64], values: &mut [Value], offset: u32);
 }
 
 macro_rules! word_kind {
     ($($ty:ty, $to:expr, $from:expr;)*) => {$(
         impl Kind for $ty {
             #[inline]
-            fn load(stack: &Stack, offset: u16) -> Self {
+            fn load(stack: &Stack, offset: u32) -> Self {
                 $from(stack.word(offset))
             }
 
             #[inline]
-            fn store(self, stack: &mut Stack, offset: u16) {
+            fn store(self, stack: &mut Stack, offset: u32) {
                 stack.set_word(offset, $to(self));
             }
 
@@ -178,6 +199,14 @@ macro_rules! word_kind {
             #[inline]
             fn leave_result(self, stack: &mut Stack) {
                 stack.result_word = $to(self);
+            }
+
+            fn read_from(words: &[u64], _: &[Value], offset: u32) -> Self {
+                $from(words[offset as usize])
+            }
+
+            fn write_to(self, words: &mut [u64], _: &mut [Value], offset: u32) {
+                words[offset as usize] = $to(self);
             }
         }
     )*};
@@ -198,12 +227,12 @@ fn node_word(node: Option<NodeId>) -> u64 {
 
 impl Kind for Value {
     #[inline]
-    fn load(stack: &Stack, offset: u16) -> Self {
+    fn load(stack: &Stack, offset: u32) -> Self {
         stack.value(offset).clone()
     }
 
     #[inline]
-    fn store(self, stack: &mut Stack, offset: u16) {
+    fn store(self, stack: &mut Stack, offset: u32) {
         stack.set_value(offset, self);
     }
 
@@ -218,6 +247,14 @@ impl Kind for Value {
 
     fn leave_result(self, stack: &mut Stack) {
         stack.result_value = self;
+    }
+
+    fn read_from(_: &[u64], values: &[Value], offset: u32) -> Self {
+        values[offset as usize].clone()
+    }
+
+    fn write_to(self, _: &mut [u64], values: &mut [Value], offset: u32) {
+        values[offset as usize] = self;
     }
 }
 

@@ -38,10 +38,6 @@ impl Value {
         Self::Text(Arc::new(Text::new(text, Charge::none())))
     }
 
-    /// Whether it is `null`.
-    pub fn is_null(&self) -> bool {
-        matches!(self, Self::Null)
-    }
 
     /// The text, if it is one.
     pub fn as_text(&self) -> Option<&Text> {
@@ -67,10 +63,10 @@ impl Value {
         }
     }
 
-    /// The node, if it is one.
-    pub fn as_node(&self) -> Option<NodeId> {
+    /// The truth value, if it is one.
+    pub fn as_boolean(&self) -> Option<bool> {
         match self {
-            Self::Node(node) => Some(*node),
+            Self::Boolean(b) => Some(*b),
             _ => None,
         }
     }

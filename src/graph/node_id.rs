@@ -23,6 +23,17 @@ impl NodeId {
         self.place.get() as usize - 1
     }
 
+    /// The whole name as one number, never 0.
+    pub fn to_bits(self) -> u64 {
+        (u64::from(self.generation) << 32) | u64::from(self.place.get())
+    }
+
+    /// The name that [`Self::to_bits`] made this number of; `None` for 0.
+    pub fn from_bits(bits: u64) -> Option<Self> {
+        let place = NonZeroU32::new(bits as u32)?;
+        Some(Self { place, generation: (bits >> 32) as u32 })
+    }
+
     pub(super) fn generation(self) -> u32 {
         self.generation
     }

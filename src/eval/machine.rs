@@ -1,0 +1,228 @@
+//! The state of a running model: graph, stack, variables, generator, output, budgets.
+
+use std::sync::Arc;
+
+use super::memory::{Charge, Meter};
+use super::program::Program;
+use super::random::JavaRandom;
+use super::stack::{Kind, Local, Stack};
+use super::text::Text;
+use super::trap::{Cause, Trap};
+use super::value::Value;
+use crate::diag::Span;
+use crate::graph::{Graph, NodeId};
+use crate::library::ClassId;
+use crate::rewrite::Queue;
+
+/// What a model may use before it is stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Turns of loops and calls of methods in one step.
+    pub steps: u64,
+    /// Methods active at one time.
+    pub depth: u32,
+    /// Bytes of texts, arrays and collections.
+    pub memory: u64,
+    /// Nodes in the graph.
+    pub nodes: u64,
+}
+
+impl Default for Limits {
+    /// Bounds that no sensible model meets: an endless loop ends after some seconds, not after hours.
+    fn default() -> Self {
+        Self { steps: 1 << 30, depth: 3_000, memory: 1 << 31, nodes: 50_000_000 }
+    }
+}
+
+/// Longest text, in bytes.
+const MAX_TEXT: usize = 1 << 26;
+/// Texts up to this length take no share of the memory budget.
+const FREE_TEXT: usize = 64;
+/// Turns between two looks at the cancellation token.
+const CHECK_EVERY: u64 = 1 << 14;
+
+/// Takes what the model prints, exactly as printed.
+pub type Output = Box<dyn FnMut(&str) + Send>;
+/// Tells whether the model shall stop as soon as possible.
+pub type StopSign = Box<dyn Fn() -> bool + Send>;
+
+/// A model while it runs.
+pub struct Machine {
+    /// The growth graph.
+    pub graph: Graph<Value>,
+    /// What the rules of this step want done.
+    pub queue: Queue<Value>,
+    /// The model's generator.
+    pub random: JavaRandom,
+    /// Local variables.
+    pub stack: Stack,
+    /// Variables of the model, as locals of one frame.
+    pub statics: Statics,
+    /// Memory of texts, arrays and collections.
+    pub meter: Arc<Meter>,
+    /// Bits of `setDerivationMode`.
+    pub derivation_mode: i32,
+    /// Number of the step that runs, from 1; 0 is `init`.
+    pub step: u64,
+    limits: Limits,
+    output: Output,
+    stop: StopSign,
+    n_ticks: u64,
+    check_at: u64,
+    stack_floor: usize,
+}
+
+/// Variables of the model.
+#[derive(Debug, Default)]
+pub struct Statics {
+    /// Numbers and nodes.
+    pub words: Vec<u64>,
+    /// Everything else.
+    pub values: Vec<Value>,
+}
+
+impl Statics {
+    /// The value of a variable.
+    pub fn read<T: Kind>(&self, local: Local) -> T {
+        let (Local::Word(at) | Local::Value(at)) = local;
+        T::read_from(&self.words, &self.values, at)
+    }
+
+    /// Sets a variable.
+    pub fn write<T: Kind>(&mut self, local: Local, value: T) {
+        let (Local::Word(at) | Local::Value(at)) = local;
+        value.write_to(&mut self.words, &mut self.values, at);
+    }
+}
+
+/// What a machine needs to begin.
+pub struct Setup {
+    /// Seed of the model's generator.
+    pub seed: i64,
+    /// Budgets.
+    pub limits: Limits,
+    /// Where `println` goes.
+    pub output: Output,
+    /// Asked now and then; true ends the run.
+    pub stop: StopSign,
+}
+
+impl Machine {
+    /// A machine with a graph of root and axiom.
+    pub fn new(program: &Program, setup: Setup) -> Self {
+        Self {
+            graph: Graph::new(Arc::clone(program.types())),
+            queue: Queue::default(),
+            random: JavaRandom::new(setup.seed),
+            stack: Stack::default(),
+            statics: program.new_statics(),
+            meter: Meter::new(setup.limits.memory),
+            derivation_mode: program.default_mode(),
+            step: 0,
+            limits: setup.limits,
+            output: setup.output,
+            stop: setup.stop,
+            n_ticks: 0,
+            check_at: CHECK_EVERY,
+            stack_floor: 0,
+        }
+    }
+
+    /// What the model may use.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// Begins a step: the count of turns starts again, and the stack of the thread that calls may grow by `stack_bytes`.
+    pub fn begin(&mut self, stack_bytes: usize) {
+        self.n_ticks = 0;
+        self.check_at = CHECK_EVERY;
+        self.stack_floor = stack_address().saturating_sub(stack_bytes);
+    }
+
+    /// Prints `text` as it is.
+    pub fn print(&mut self, text: &str) {
+        (self.output)(text);
+    }
+
+    /// Counts a turn of the loop (or an application of the rule) at `span`.
+    #[inline]
+    pub fn tick(&mut self, span: Span) -> Result<(), Trap> {
+        self.n_ticks += 1;
+        if self.n_ticks < self.check_at { Ok(()) } else { self.check_budget(span) }
+    }
+
+    #[cold]
+    fn check_budget(&mut self, span: Span) -> Result<(), Trap> {
+        self.check_at = self.n_ticks + CHECK_EVERY;
+        if (self.stop)() {
+            return Err(Trap::new(Cause::Cancelled, Some(span)));
+        }
+        if self.n_ticks <= self.limits.steps {
+            return Ok(());
+        }
+        let message = format!("this loop does not end: {} turns and calls in one step", self.limits.steps);
+        let hint = "does its condition ever become false? `step_limit` allows more turns";
+        Err(Trap::limit("step-limit", message, hint, Some(span)))
+    }
+
+    /// Counts a call made at `span`, of the method `name`.
+    #[inline]
+    pub fn enter_call(&mut self, name: &str, span: Span) -> Result<(), Trap> {
+        self.tick(span)?;
+        if self.stack.depth < self.limits.depth && stack_address() > self.stack_floor {
+            return Ok(());
+        }
+        Err(too_deep(self.stack.depth, name, span))
+    }
+
+    /// A text with its share of the memory budget.
+    pub fn new_text(&self, text: String) -> Result<Value, Trap> {
+        let n_bytes = text.len();
+        if n_bytes > MAX_TEXT {
+            let message = format!("a text of {n_bytes} bytes is longer than the {MAX_TEXT} allowed");
+            return Err(Trap::limit("text-limit", message, "does a loop append to a text without end?", None));
+        }
+        let charge = if n_bytes > FREE_TEXT { self.charge(n_bytes as u64)? } else { Charge::none() };
+        Ok(Value::Text(Arc::new(Text::new(text, charge))))
+    }
+
+    /// A share of the memory budget.
+    pub fn charge(&self, bytes: u64) -> Result<Charge, Trap> {
+        self.meter.charge(bytes).map_err(|over| Trap::memory(over, None))
+    }
+
+    /// Appends the text of any value, nodes by type and number.
+    pub fn append_text(&self, value: &Value, out: &mut String) {
+        match value {
+            Value::Node(node) => out.push_str(&self.node_name(*node)),
+            other => other.append_to(out),
+        }
+    }
+
+    /// Type and number of a node, for messages: `Bud[12]`.
+    pub fn node_name(&self, node: NodeId) -> String {
+        match self.graph.type_of(node) {
+            Some(ty) => format!("{}[{}]", self.graph.types()[ty].name, node.index()),
+            None => format!("deleted node [{}]", node.index()),
+        }
+    }
+}
+
+#[cold]
+fn too_deep(depth: u32, name: &str, span: Span) -> Trap {
+    let message = format!("method `{name}` is called {depth} deep");
+    let hint = "a method that calls itself needs a condition under which it stops";
+    Trap::limit("recursion-limit", message, hint, Some(span))
+}
+
+/// About where the stack of this thread stands.
+fn stack_address() -> usize {
+    let here = 0_u8;
+    std::ptr::from_ref(std::hint::black_box(&here)) as usize
+}
+
+/// An exception with the text Java gives an index that is out of bounds.
+pub fn out_of_bounds(class: ClassId, index: i64, length: usize, span: Span) -> Trap {
+    Trap::exception(class, format!("Index {index} out of bounds for length {length}"), span)
+}
