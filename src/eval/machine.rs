@@ -10,9 +10,10 @@ use super::text::Text;
 use super::trap::{Cause, Trap};
 use super::value::Value;
 use crate::diag::Span;
-use crate::graph::{Graph, NodeId};
+use crate::graph::{Graph, GraphError, NodeId};
 use crate::library::ClassId;
-use crate::rewrite::Queue;
+use crate::rewrite::{Derivation, Mode, Queue, RewriteError, ScratchPool};
+use crate::turtle::Poses;
 
 /// What a model may use before it is stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +35,10 @@ impl Default for Limits {
     }
 }
 
+/// Bit of the derivation mode: nodes that a rule has consumed are matched no more.
+const EXCLUDE_DELETED: i32 = 8;
+/// Parallel, deleted nodes excluded.
+const DEFAULT_MODE: i32 = EXCLUDE_DELETED;
 /// Longest text, in bytes.
 const MAX_TEXT: usize = 1 << 26;
 /// Texts up to this length take no share of the memory budget.
@@ -56,6 +61,10 @@ pub struct Machine {
     pub random: JavaRandom,
     /// Local variables.
     pub stack: Stack,
+    /// Where nodes are.
+    pub poses: Poses,
+    /// Buffers of searches.
+    pub scratch: ScratchPool,
     /// Variables of the model, as locals of one frame.
     pub statics: Statics,
     /// Memory of texts, arrays and collections.
@@ -109,15 +118,21 @@ pub struct Setup {
 
 impl Machine {
     /// A machine with a graph of root and axiom.
-    pub fn new(program: &Program, setup: Setup) -> Self {
-        Self {
-            graph: Graph::new(Arc::clone(program.types())),
+    ///
+    /// # Errors
+    /// The budget has no room for the two.
+    pub fn new(program: &Program, setup: Setup) -> Result<Self, Trap> {
+        let limit = usize::try_from(setup.limits.nodes).unwrap_or(usize::MAX);
+        Ok(Self {
+            graph: Graph::new(Arc::clone(program.types()), limit)?,
+            poses: Poses::default(),
+            scratch: ScratchPool::default(),
             queue: Queue::default(),
             random: JavaRandom::new(setup.seed),
             stack: Stack::default(),
             statics: program.new_statics(),
             meter: Meter::new(setup.limits.memory),
-            derivation_mode: program.default_mode(),
+            derivation_mode: DEFAULT_MODE,
             step: 0,
             limits: setup.limits,
             output: setup.output,
@@ -125,7 +140,17 @@ impl Machine {
             n_ticks: 0,
             check_at: CHECK_EVERY,
             stack_floor: 0,
-        }
+        })
+    }
+
+    /// Empties the graph and forgets what is queued, for a new start of the model.
+    pub fn clear(&mut self, program: &Program) -> Result<(), Trap> {
+        let limit = self.graph.limit();
+        self.queue = Queue::default();
+        self.graph = Graph::new(Arc::clone(program.types()), limit)?;
+        self.poses = Poses::default();
+        self.derivation_mode = DEFAULT_MODE;
+        Ok(())
     }
 
     /// What the model may use.
@@ -179,12 +204,51 @@ impl Machine {
     /// A text with its share of the memory budget.
     pub fn new_text(&self, text: String) -> Result<Value, Trap> {
         let n_bytes = text.len();
-        if n_bytes > MAX_TEXT {
-            let message = format!("a text of {n_bytes} bytes is longer than the {MAX_TEXT} allowed");
-            return Err(Trap::limit("text-limit", message, "does a loop append to a text without end?", None));
-        }
+        self.check_text(n_bytes)?;
         let charge = if n_bytes > FREE_TEXT { self.charge(n_bytes as u64)? } else { Charge::none() };
         Ok(Value::Text(Arc::new(Text::new(text, charge))))
+    }
+
+    /// Refuses a text of so many bytes if that is too long.
+    pub fn check_text(&self, n_bytes: usize) -> Result<(), Trap> {
+        if n_bytes <= MAX_TEXT {
+            return Ok(());
+        }
+        let message = format!("a text of {n_bytes} bytes is longer than the {MAX_TEXT} allowed");
+        Err(Trap::limit("text-limit", message, "does a loop append to a text without end?", None))
+    }
+
+    /// Applies what the rules have queued, for the call of `derive()` at `span`.
+    pub fn derive(&mut self, span: Span) -> Result<(), Trap> {
+        match self.queue.apply(&mut self.graph) {
+            Ok(()) => Ok(()),
+            Err(RewriteError::Graph(error)) => Err(Trap::from(error).at(span)),
+            Err(RewriteError::DivisionByZero) => {
+                Err(Trap::exception(ClassId::ArithmeticException, "/ by zero", span))
+            }
+        }
+    }
+
+    /// How rules are applied.
+    pub fn mode(&self) -> Mode {
+        let derivation = match self.derivation_mode & 3 {
+            2 => Derivation::Sequential,
+            3 => Derivation::SequentialRandom,
+            _ => Derivation::Parallel,
+        };
+        Mode { derivation, excludes_consumed: self.derivation_mode & EXCLUDE_DELETED != 0 }
+    }
+
+    /// What a fault of the graph means to the model that used `node` at `span`.
+    #[cold]
+    pub fn graph_trap(&self, error: &GraphError, node: NodeId, span: Span) -> Trap {
+        match error {
+            GraphError::DeletedNode => {
+                let message = format!("{} was removed from the graph in an earlier step", self.node_name(node));
+                Trap::exception(ClassId::IllegalStateException, message, span)
+            }
+            other => Trap::from(other.clone()).at(span),
+        }
     }
 
     /// A share of the memory budget.
@@ -203,8 +267,8 @@ impl Machine {
     /// Type and number of a node, for messages: `Bud[12]`.
     pub fn node_name(&self, node: NodeId) -> String {
         match self.graph.type_of(node) {
-            Some(ty) => format!("{}[{}]", self.graph.types()[ty].name, node.index()),
-            None => format!("deleted node [{}]", node.index()),
+            Ok(ty) => format!("{}[{}]", self.graph.types()[ty].name, node.index()),
+            Err(_) => format!("deleted node [{}]", node.index()),
         }
     }
 }

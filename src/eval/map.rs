@@ -6,7 +6,7 @@ use super::memory::Charge;
 use super::value::Value;
 
 /// Values by key.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct JavaMap {
     /// Places in `entries` by the hash code of the key.
     places: HashMap<i32, Vec<usize>>,
@@ -15,13 +15,6 @@ pub struct JavaMap {
     n_entries: usize,
     /// What the entries take of the memory budget.
     pub charge: Charge,
-}
-
-impl Clone for JavaMap {
-    fn clone(&self) -> Self {
-        let (places, entries) = (self.places.clone(), self.entries.clone());
-        Self { places, entries, n_entries: self.n_entries, charge: Charge::none() }
-    }
 }
 
 impl JavaMap {

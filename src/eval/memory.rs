@@ -57,6 +57,13 @@ impl Charge {
     }
 }
 
+impl Clone for Charge {
+    /// A copy of what was charged is short-lived and takes no share.
+    fn clone(&self) -> Self {
+        Self::none()
+    }
+}
+
 impl Drop for Charge {
     fn drop(&mut self) {
         if let Some((meter, bytes)) = &self.0 {

@@ -42,24 +42,18 @@ pub enum Data {
     /// A map.
     Map(Box<JavaMap>),
     /// A `StringBuffer` or `StringBuilder`.
-    Buffer(String),
+    Buffer(String, Charge),
     /// Something thrown.
     Throwable(Option<Arc<Text>>),
 }
 
 /// Elements of a list, and the share of the memory budget they take.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct List {
     /// The elements.
     pub values: Vec<Value>,
     /// What they take.
     pub charge: Charge,
-}
-
-impl Clone for List {
-    fn clone(&self) -> Self {
-        Self { values: self.values.clone(), charge: Charge::none() }
-    }
 }
 
 /// What a `Phong` shader was given; linear red, green, blue.
@@ -183,7 +177,7 @@ impl Object {
             Data::Map(map) => {
                 push_all(out, ["{", "}"], map.entries().map(|(key, value)| format!("{key}={value}")));
             }
-            Data::Buffer(text) => out.push_str(&text),
+            Data::Buffer(text, _) => out.push_str(&text),
             Data::Throwable(message) => {
                 out.push_str(&qualified(self.class));
                 if let Some(message) = message {

@@ -6,7 +6,8 @@ use super::memory::OverBudget;
 use super::object::{Data, Object, qualified};
 use super::text::Text;
 use super::value::Value;
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Label, Span};
+use crate::graph::GraphError;
 use crate::library::ClassId;
 
 /// Most lines of trace that are kept; a deep recursion has thousands of equal ones.
@@ -20,6 +21,7 @@ pub struct Trap(Box<Fault>);
 struct Fault {
     cause: Cause,
     span: Option<Span>,
+    notes: Vec<(Span, String)>,
     trace: Vec<String>,
     n_omitted: usize,
 }
@@ -47,7 +49,7 @@ pub enum Cause {
 impl Trap {
     /// Some end of an evaluation at `span`.
     pub fn new(cause: Cause, span: Option<Span>) -> Self {
-        Self(Box::new(Fault { cause, span, trace: vec![], n_omitted: 0 }))
+        Self(Box::new(Fault { cause, span, notes: vec![], trace: vec![], n_omitted: 0 }))
     }
 
     /// An exception of the language.
@@ -105,9 +107,18 @@ impl Trap {
         self
     }
 
+    /// Adds another place, unless there is one already: the innermost rule explains most.
+    #[must_use]
+    pub fn noting(mut self, span: Span, text: impl FnOnce() -> String) -> Self {
+        if self.0.notes.is_empty() {
+            self.0.notes.push((span, text()));
+        }
+        self
+    }
+
     /// The message for the user.
     pub fn into_diagnostic(self) -> Diagnostic {
-        let Fault { cause, span, trace, n_omitted } = *self.0;
+        let Fault { cause, span, notes, trace, n_omitted } = *self.0;
         let (slug, message, hint) = match cause {
             Cause::Exception(value) => ("exception", value.to_string(), None),
             Cause::Limit { slug, message, hint } => (slug, message, Some(hint)),
@@ -118,12 +129,34 @@ impl Trap {
         if span.is_none() {
             diagnostic.primary = None;
         }
+        diagnostic.secondary.extend(notes.into_iter().map(|(span, text)| Label { span, text }));
         diagnostic.hints.extend(hint);
         diagnostic.trace = trace;
         if n_omitted > 0 {
             diagnostic.trace.push(format!("… {n_omitted} more"));
         }
         diagnostic
+    }
+}
+
+impl From<GraphError> for Trap {
+    /// What a fault of the graph means to the model.
+    fn from(error: GraphError) -> Self {
+        let (class, message) = match error {
+            GraphError::DeletedNode => {
+                (ClassId::IllegalStateException, "the node was removed from the graph in an earlier step".to_owned())
+            }
+            GraphError::SelfEdge => {
+                (ClassId::IllegalArgumentException, "Cannot create an edge from a node to itself".to_owned())
+            }
+            GraphError::TooManyNodes { limit } => {
+                let message = format!("the model grows beyond {limit} modules");
+                return Self::limit("module-limit", message, "does a rule multiply without end? `max_modules` allows more", None);
+            }
+        };
+        let mut trap = Self::exception(class, message, Span::default());
+        trap.0.span = None;
+        trap
     }
 }
 

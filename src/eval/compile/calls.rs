@@ -1,6 +1,5 @@
 //! Calls of methods, and the making of nodes.
 
-use super::places::graph_trap;
 use super::{Scope, convert, places};
 use crate::check::model::{Expr, MethodId, Model, NewNode, Slot, Stmt, Type};
 use crate::diag::Span;
@@ -11,7 +10,7 @@ use crate::eval::program::Program;
 use crate::eval::stack::{Kind, Local, is_word};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
-use crate::graph::{FieldId, NodeId, TypeId};
+use crate::graph::{NodeId, TypeId};
 
 /// A call as the checker resolved it.
 pub(super) struct CallSite<'e> {
@@ -71,7 +70,7 @@ impl Scope<'_> {
             };
             let method = match &overrides {
                 Some(table) => {
-                    let ty = m.graph.type_of(node).map_err(|error| graph_trap(m, &error, node, span))?;
+                    let ty = m.graph.type_of(node).map_err(|error| m.graph_trap(&error, node, span))?;
                     table[usize::from(ty.0)]
                 }
                 None => own,
@@ -81,19 +80,6 @@ impl Scope<'_> {
             push_all(&args, p, m)?;
             p.run_method(method, m, mark, span)
         })
-    }
-
-    /// `p := v` and its kin.
-    pub(super) fn deferred(
-        &self,
-        node: &Expr,
-        field: FieldId,
-        op: Option<crate::check::model::Operator>,
-        value: &Expr,
-        span: Span,
-    ) -> Code {
-        let (target, owner) = (self.node(node), self.field(&node.ty, field));
-        self.deferred_assignment((target, owner), field, op, value, span)
     }
 
     /// `x.(a = 1, setB(2))`
@@ -118,7 +104,7 @@ impl Scope<'_> {
     pub(super) fn new_node(&self, new: &NewNode, span: Span) -> Code {
         let (ty, fill) = (new.type_id, self.fill_node(new, span));
         Code::Node(Source::code(move |p, m| {
-            let node = m.graph.create(ty).map_err(|error| graph_trap(m, &error, m.graph.root(), span))?;
+            let node = m.graph.create(ty).map_err(|error| Trap::from(error).at(span))?;
             fill(p, m, node)?;
             Ok(Some(node))
         }))

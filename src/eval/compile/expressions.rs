@@ -46,14 +46,16 @@ impl Scope<'_> {
     /// Expressions that deal with nodes, objects, arrays, sequences and calls.
     fn object_expr(&self, e: &Expr) -> Code {
         match &e.kind {
-            ExprKind::Deferred { node, field, op, value } => self.deferred(node, *field, *op, value, e.span),
+            ExprKind::Deferred { node, field, op, value } => {
+                self.deferred_assignment(node, *field, *op, value, e.span)
+            },
             ExprKind::Call { method, receiver, args, is_virtual } => {
                 let call = calls::CallSite { method: *method, receiver: receiver.as_deref(), args, is_virtual: *is_virtual };
                 self.call(&call, &e.ty, e.span)
             }
-            ExprKind::Library(function, args) => self.library_function(*function, args, e.span),
-            ExprKind::LibraryMethod(method, receiver, args) => self.library_method(*method, receiver, args, e.span),
-            ExprKind::NewObject(constructor, args) => self.new_object(*constructor, args, &e.ty, e.span),
+            ExprKind::Library(function, args) => self.library_function(*function, args, e),
+            ExprKind::LibraryMethod(method, receiver, args) => self.library_method(*method, receiver, args, e),
+            ExprKind::NewObject(constructor, args) => self.new_object(*constructor, args, e),
             ExprKind::NewNode(new) => self.new_node(new, e.span),
             ExprKind::With { object, slot, body } => self.with(object, *slot, body),
             ExprKind::NewArray(lengths) => self.new_array(lengths, &e.ty, e.span),

@@ -8,6 +8,7 @@ mod arrays;
 mod calls;
 mod convert;
 mod expressions;
+mod library;
 mod loops;
 mod operators;
 mod places;
@@ -18,14 +19,12 @@ mod statements;
 
 use std::cell::Cell;
 
-use super::code::{Code, FromCode, Source};
+use super::code::{Exec, FromCode, Source};
 use super::program::Outline;
 use super::stack::{Layout, Local, is_word};
 use super::value::Value;
-use crate::check::model::{Expr, Model, Slot, Type};
+use crate::check::model::{Expr, Model, Production, Slot, Stmt, Type};
 use crate::graph::NodeId;
-
-pub(super) use places::graph_trap;
 
 /// The frame for which code is made.
 pub(super) struct Scope<'m> {
@@ -34,6 +33,8 @@ pub(super) struct Scope<'m> {
     /// Where the variables of the model live.
     pub(super) outline: &'m Outline,
     locals: Layout,
+    /// What `return` gives.
+    result: &'m Type,
     /// Words and values of the frame so far, temporaries included.
     n_words: Cell<u32>,
     n_values: Cell<u32>,
@@ -41,10 +42,10 @@ pub(super) struct Scope<'m> {
 
 impl<'m> Scope<'m> {
     /// A frame with slots of these types.
-    pub(super) fn new(model: &'m Model, outline: &'m Outline, frame: &[Type]) -> Self {
+    pub(super) fn new(model: &'m Model, outline: &'m Outline, frame: &[Type], result: &'m Type) -> Self {
         let locals = Layout::new(frame);
         let (n_words, n_values) = locals.size();
-        Self { model, outline, locals, n_words: Cell::new(n_words), n_values: Cell::new(n_values) }
+        Self { model, outline, locals, result, n_words: Cell::new(n_words), n_values: Cell::new(n_values) }
     }
 
     /// The layout that the code made needs.
@@ -95,7 +96,13 @@ impl<'m> Scope<'m> {
         exprs.iter().map(|e| self.value(e)).collect()
     }
 
-    fn code(&self, expr: &Expr) -> Code {
-        self.expr(expr)
+    /// The code of a method or constructor.
+    pub(super) fn body(&self, body: &[Stmt]) -> Exec {
+        self.block(body)
+    }
+
+    /// The code of an instantiation body.
+    pub(super) fn instantiation(&self, body: &[Production]) -> Exec {
+        self.productions(body)
     }
 }

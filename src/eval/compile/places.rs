@@ -15,7 +15,7 @@ use crate::eval::program::Program;
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
-use crate::graph::{FieldId, GraphError, NodeId};
+use crate::graph::{FieldId, NodeId};
 use crate::library::ClassId;
 
 /// A field of a node, with its name for messages.
@@ -259,7 +259,7 @@ pub(super) fn read_field<T: Access>(
     span: Span,
 ) -> Result<T, Trap> {
     match node {
-        Some(id) => T::field(&machine.graph, id, field.id).map_err(|error| graph_trap(machine, &error, id, span)),
+        Some(id) => T::field(&machine.graph, id, field.id).map_err(|error| machine.graph_trap(&error, id, span)),
         None => Err(null_field("read", field, span)),
     }
 }
@@ -273,33 +273,13 @@ pub(super) fn write_field<T: Access>(
     span: Span,
 ) -> Result<(), Trap> {
     let Some(id) = node else { return Err(null_field("assign", field, span)) };
-    value.set_field(&mut machine.graph, id, field.id).map_err(|error| graph_trap(machine, &error, id, span))
+    value.set_field(&mut machine.graph, id, field.id).map_err(|error| machine.graph_trap(&error, id, span))
 }
 
 #[cold]
 fn null_field(verb: &str, field: &Field, span: Span) -> Trap {
     let message = format!("Cannot {verb} field \"{}\" because the object is null", field.name);
     Trap::exception(ClassId::NullPointerException, message, span)
-}
-
-/// What a fault of the graph means to the model.
-#[cold]
-pub(super) fn graph_trap(machine: &Machine, error: &GraphError, node: NodeId, span: Span) -> Trap {
-    let (class, message) = match error {
-        GraphError::DeletedNode => {
-            let name = machine.node_name(node);
-            (ClassId::IllegalStateException, format!("{name} was removed from the graph in an earlier step"))
-        }
-        GraphError::SelfEdge => {
-            (ClassId::IllegalArgumentException, "Cannot create an edge from a node to itself".to_owned())
-        }
-        GraphError::TooManyNodes { limit } => {
-            let message = format!("the model grows beyond {limit} modules");
-            let hint = "does a rule multiply without end? `max_modules` allows more";
-            return Trap::limit("module-limit", message, hint, Some(span));
-        }
-    };
-    Trap::exception(class, message, span)
 }
 
 fn read_element<T: Access>(array: &Value, index: i32, span: Span) -> Result<T, Trap> {

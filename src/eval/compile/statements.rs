@@ -1,10 +1,8 @@
 //! Statements without loops.
 
 use super::Scope;
-use super::places::with_kind;
-use crate::check::model::{Constant, Expr, Slot, Stmt, StmtKind, Type};
+use crate::check::model::{Constant, Expr, Slot, Stmt, StmtKind};
 use crate::diag::Span;
-use crate::eval::access::Access;
 use crate::eval::code::{Code, Exec, Flow, Label, Source};
 use crate::eval::machine::Machine;
 use crate::eval::program::Program;
@@ -102,26 +100,24 @@ impl Scope<'_> {
     }
 
     fn return_value(&self, value: Option<&Expr>) -> Exec {
-        match value {
-            None => Box::new(|_, _| Ok(Flow::Return)),
-            Some(e) => with_kind!(&e.ty, self.return_kind(e)),
-        }
-    }
-
-    fn return_kind<T: Access>(&self, value: &Expr) -> Exec {
-        // A method of type node may return the untyped null: leave both, the caller takes what it declares.
-        if matches!(value.ty, Type::Null) {
-            return Box::new(|_, m| {
-                (m.stack.result_word, m.stack.result_value) = (0, Value::Null);
+        fn leave<T: Kind>(source: Source<T>) -> Exec {
+            Box::new(move |p, m| {
+                let value = source.get(p, m)?;
+                value.leave_result(&mut m.stack);
                 Ok(Flow::Return)
-            });
+            })
         }
-        let value = self.source::<T>(value);
-        Box::new(move |p, m| {
-            let value = value.get(p, m)?;
-            value.leave_result(&mut m.stack);
-            Ok(Flow::Return)
-        })
+        let Some(value) = value else { return Box::new(|_, _| Ok(Flow::Return)) };
+        match self.as_type(value, self.result) {
+            Code::Void(code) => Box::new(move |p, m| code(p, m).map(|()| Flow::Return)),
+            Code::Boolean(s) => leave(s),
+            Code::Int(s) => leave(s),
+            Code::Long(s) => leave(s),
+            Code::Float(s) => leave(s),
+            Code::Double(s) => leave(s),
+            Code::Node(s) => leave(s),
+            Code::Value(s) => leave(s),
+        }
     }
 
     fn switch(&self, value: &Expr, cases: &[(Constant, usize)], default: Option<usize>, body: &[Stmt]) -> Exec {

@@ -1,0 +1,269 @@
+//! Functions over sequences: `sum`, `count`, `first` and their kin, in the types that the goldens show.
+
+use std::sync::Arc;
+
+use super::sequences::{Iterate, Turn, read_place};
+use super::{Scope, arrays, convert};
+use crate::check::model::{Aggregate, Expr, Sequence, Slot, Type};
+use crate::diag::Span;
+use crate::eval::access::Access;
+use crate::eval::array::{Array, Elements};
+use crate::eval::code::{Code, FromCode, Source};
+use crate::eval::stack::{Kind, Local};
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+use crate::graph::NodeId;
+use crate::library::ClassId;
+
+/// Elements of a list that grows are counted in this unit by the memory budget.
+const GROWTH: usize = 1024;
+
+impl Scope<'_> {
+    pub(super) fn aggregate(&self, aggregate: Aggregate, sequence: &Sequence, e: &Expr) -> Code {
+        let ty = self.element_type(sequence);
+        let place = self.element_place(&ty);
+        let (Local::Word(at) | Local::Value(at)) = place;
+        let elements = self.sequence(sequence, Some(place));
+        let is_boolean = ty == Type::Boolean;
+        match aggregate {
+            Aggregate::Count => Code::Long(Source::code(move |p, m| {
+                let mut n = 0_i64;
+                elements(p, m, &mut |_, _| {
+                    n += 1;
+                    Ok(Turn::Next)
+                })?;
+                Ok(n)
+            })),
+            Aggregate::Empty => Code::Boolean(any(elements, None).map(|is_any| !is_any)),
+            Aggregate::Exist => Code::Boolean(any(elements, is_boolean.then_some((at, true)))),
+            Aggregate::Forall => Code::Boolean(any(elements, Some((at, false))).map(|is_any| !is_any)),
+            Aggregate::First => self.pick(elements, &ty, at, Pick::First),
+            Aggregate::Last => self.pick(elements, &ty, at, Pick::Last),
+            Aggregate::SelectRandomly => self.pick(elements, &ty, at, Pick::Random),
+            Aggregate::Sum | Aggregate::Prod | Aggregate::Min | Aggregate::Max | Aggregate::Mean => {
+                convert::number(fold(aggregate, elements, &ty, at, e.span), &e.ty)
+            }
+            Aggregate::Array => collected(elements, &ty, place, e.span),
+            Aggregate::String => joined(elements, &ty, place, e.span),
+        }
+    }
+
+    /// `selectWhereMin` and `selectWhereMax`: the first element whose key is extreme.
+    pub(super) fn select_where(&self, is_min: bool, sequence: &Sequence, slot: Slot, key: &Expr, ty: &Type) -> Code {
+        let elements = self.sequence(sequence, Some(self.local(slot)));
+        let key = f64::from_code(convert::number(self.expr(key), &Type::Double));
+        let (Local::Word(at) | Local::Value(at)) = self.local(slot);
+        fn select<T: Access>(elements: Iterate, key: Source<f64>, at: u32, is_min: bool) -> Code {
+            T::into_code(Source::code(move |p, m| {
+                let mut best: Option<(f64, T)> = None;
+                elements(p, m, &mut |p, m| {
+                    let value = T::load(&m.stack, at);
+                    let key = key.get(p, m)?;
+                    let is_better = |old: f64| if is_min { key < old } else { key > old };
+                    if best.as_ref().is_none_or(|(old, _)| is_better(*old)) {
+                        best = Some((key, value));
+                    }
+                    Ok(Turn::Next)
+                })?;
+                Ok(best.map(|(_, value)| value).unwrap_or_default())
+            }))
+        }
+        match ty {
+            Type::Node(_) => select::<Option<NodeId>>(elements, key, at, is_min),
+            _ => select::<Value>(elements, key, at, is_min),
+        }
+    }
+
+    fn pick(&self, elements: Iterate, ty: &Type, at: u32, pick: Pick) -> Code {
+        match ty {
+            Type::Boolean => picked::<bool>(elements, at, pick),
+            Type::Byte | Type::Short | Type::Char | Type::Int => picked::<i32>(elements, at, pick),
+            Type::Long => picked::<i64>(elements, at, pick),
+            Type::Float => picked::<f32>(elements, at, pick),
+            Type::Double => picked::<f64>(elements, at, pick),
+            Type::Node(_) => picked::<Option<NodeId>>(elements, at, pick),
+            _ => picked::<Value>(elements, at, pick),
+        }
+    }
+}
+
+/// Which element is wanted.
+#[derive(Clone, Copy)]
+enum Pick {
+    First,
+    Last,
+    /// Each with the same probability: the n-th takes the place of the one before with probability 1/n.
+    Random,
+}
+
+fn picked<T: Access>(elements: Iterate, at: u32, pick: Pick) -> Code {
+    T::into_code(Source::code(move |p, m| {
+        let mut found = T::default();
+        let mut n = 0_i32;
+        elements(p, m, &mut |_, m| {
+            n = n.saturating_add(1);
+            if !matches!(pick, Pick::Random) || m.random.next_int_below(n) == Some(0) {
+                found = T::load(&m.stack, at);
+            }
+            Ok(if matches!(pick, Pick::First) { Turn::Stop } else { Turn::Next })
+        })?;
+        Ok(found)
+    }))
+}
+
+/// Whether any element is there, or any that is the boolean asked for.
+fn any(elements: Iterate, wanted: Option<(u32, bool)>) -> Source<bool> {
+    Source::code(move |p, m| {
+        let turn = elements(p, m, &mut |_, m| {
+            let is_wanted = wanted.is_none_or(|(at, value)| bool::load(&m.stack, at) == value);
+            Ok(if is_wanted { Turn::Stop } else { Turn::Next })
+        })?;
+        Ok(turn == Turn::Stop)
+    })
+}
+
+/// How numbers of one type are summed, compared and averaged.
+trait Number: Access + Copy + PartialOrd {
+    const ZERO: Self;
+    const ONE: Self;
+    const LEAST: Self;
+    const GREATEST: Self;
+    fn plus(self, other: Self) -> Self;
+    fn times(self, other: Self) -> Self;
+    /// The mean of `n` numbers with this sum.
+    fn over(self, n: i64, span: Span) -> Result<Self, Trap>;
+}
+
+macro_rules! whole_number {
+    ($($ty:ty),*) => {$(
+        impl Number for $ty {
+            const ZERO: Self = 0;
+            const ONE: Self = 1;
+            const LEAST: Self = <$ty>::MIN;
+            const GREATEST: Self = <$ty>::MAX;
+
+            fn plus(self, other: Self) -> Self {
+                self.wrapping_add(other)
+            }
+
+            fn times(self, other: Self) -> Self {
+                self.wrapping_mul(other)
+            }
+
+            fn over(self, n: i64, span: Span) -> Result<Self, Trap> {
+                if n == 0 {
+                    return Err(Trap::exception(ClassId::ArithmeticException, "/ by zero", span));
+                }
+                Ok((self as i64).wrapping_div(n) as Self)
+            }
+        }
+    )*};
+}
+whole_number!(i32, i64);
+
+macro_rules! floating_number {
+    ($($ty:ty),*) => {$(
+        impl Number for $ty {
+            const ZERO: Self = 0.0;
+            const ONE: Self = 1.0;
+            const LEAST: Self = <$ty>::NEG_INFINITY;
+            const GREATEST: Self = <$ty>::INFINITY;
+
+            fn plus(self, other: Self) -> Self {
+                self + other
+            }
+
+            fn times(self, other: Self) -> Self {
+                self * other
+            }
+
+            fn over(self, n: i64, _: Span) -> Result<Self, Trap> {
+                Ok(self / n as Self)
+            }
+        }
+    )*};
+}
+floating_number!(f32, f64);
+
+fn fold(aggregate: Aggregate, elements: Iterate, ty: &Type, at: u32, span: Span) -> Code {
+    match ty {
+        Type::Long => folded::<i64>(aggregate, elements, at, span),
+        Type::Float => folded::<f32>(aggregate, elements, at, span),
+        Type::Double => folded::<f64>(aggregate, elements, at, span),
+        _ => folded::<i32>(aggregate, elements, at, span),
+    }
+}
+
+fn folded<T: Number>(aggregate: Aggregate, elements: Iterate, at: u32, span: Span) -> Code {
+    let (start, step): (T, fn(T, T) -> T) = match aggregate {
+        Aggregate::Prod => (T::ONE, T::times),
+        Aggregate::Min => (T::GREATEST, |a, b| if b < a { b } else { a }),
+        Aggregate::Max => (T::LEAST, |a, b| if b > a { b } else { a }),
+        _ => (T::ZERO, T::plus),
+    };
+    let is_mean = aggregate == Aggregate::Mean;
+    T::into_code(Source::code(move |p, m| {
+        let (mut total, mut n) = (start, 0_i64);
+        elements(p, m, &mut |_, m| {
+            total = step(total, T::load(&m.stack, at));
+            n += 1;
+            Ok(Turn::Next)
+        })?;
+        if is_mean { total.over(n, span) } else { Ok(total) }
+    }))
+}
+
+/// `array(seq)`
+fn collected(elements: Iterate, ty: &Type, place: Local, span: Span) -> Code {
+    let kind = arrays::empty(ty);
+    let element = convert::boxed(read_place(ty, place), ty);
+    Code::Value(Source::code(move |p, m| {
+        let (mut values, mut charge) = (vec![], m.charge(0)?);
+        elements(p, m, &mut |p, m| {
+            if values.len() % GROWTH == 0 {
+                charge = m.charge((values.len() + GROWTH) as u64 * size_of::<Value>() as u64).map_err(|t| t.at(span))?;
+            }
+            values.push(element.get(p, m)?);
+            Ok(Turn::Next)
+        })?;
+        drop(charge);
+        let array = arrays::new_array(m, &kind, values.len()).map_err(|trap| trap.at(span))?;
+        for (i, value) in values.into_iter().enumerate() {
+            put_boxed(&array, i, value);
+        }
+        Ok(Value::Array(Arc::new(array)))
+    }))
+}
+
+fn put_boxed(array: &Array, index: usize, value: Value) {
+    let written = match array.elements() {
+        Elements::Boolean(_) => bool::unboxed(&value).set_element(array, index),
+        Elements::Byte(_) | Elements::Short(_) | Elements::Char(_) | Elements::Int(_) => {
+            i32::unboxed(&value).set_element(array, index)
+        }
+        Elements::Long(_) => i64::unboxed(&value).set_element(array, index),
+        Elements::Float(_) => f32::unboxed(&value).set_element(array, index),
+        Elements::Double(_) => f64::unboxed(&value).set_element(array, index),
+        Elements::Reference(_) => value.set_element(array, index),
+    };
+    debug_assert!(written.is_some(), "the array was made for these elements");
+}
+
+/// `string(seq)`: `[a, b, c]`
+fn joined(elements: Iterate, ty: &Type, place: Local, span: Span) -> Code {
+    let element = convert::boxed(read_place(ty, place), ty);
+    Code::Value(Source::code(move |p, m| {
+        let mut text = String::from("[");
+        elements(p, m, &mut |p, m| {
+            if text.len() > 1 {
+                text.push_str(", ");
+            }
+            let value = element.get(p, m)?;
+            m.append_text(&value, &mut text);
+            m.check_text(text.len()).map_err(|trap| trap.at(span))?;
+            Ok(Turn::Next)
+        })?;
+        text.push(']');
+        m.new_text(text).map_err(|trap| trap.at(span))
+    }))
+}

@@ -1,0 +1,96 @@
+//! Calls of the library.
+
+use super::Scope;
+use super::places::with_kind;
+use crate::check::model::{Expr, Type};
+use crate::diag::Span;
+use crate::eval::access::Access;
+use crate::eval::code::{Code, Source};
+use crate::eval::library::{Behaviour, Context, Maker, Native, constructor, function, method};
+use crate::eval::machine::Machine;
+use crate::eval::program::Program;
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+use crate::library::{ClassId, ConstructorId, FunctionId, MethodId};
+
+/// Most arguments of a library function, receiver included.
+const MAX_ARGUMENTS: usize = 8;
+
+impl Scope<'_> {
+    pub(super) fn library_function(&self, id: FunctionId, args: &[Expr], e: &Expr) -> Code {
+        self.behave(function(id), args, &e.ty, e.span)
+    }
+
+    pub(super) fn library_method(&self, id: MethodId, receiver: &Expr, args: &[Expr], e: &Expr) -> Code {
+        let mut all = vec![receiver.clone()];
+        all.extend_from_slice(args);
+        self.behave(method(id), &all, &e.ty, e.span)
+    }
+
+    pub(super) fn new_object(&self, id: ConstructorId, args: &[Expr], e: &Expr) -> Code {
+        let (maker, span): (Maker, Span) = (constructor(id), e.span);
+        let args = self.values(args);
+        let class = match e.ty {
+            Type::Class(class) => class,
+            // `new String()`: the maker does not look at it.
+            _ => ClassId::Throwable,
+        };
+        Code::Value(Source::code(move |program, machine| {
+            with_arguments(&args, program, machine, |machine, args| {
+                maker(&mut Context { program, machine, span }, class, args)
+            })
+        }))
+    }
+
+    fn behave(&self, behaviour: Behaviour, args: &[Expr], ty: &Type, span: Span) -> Code {
+        match behaviour {
+            Behaviour::Int1(f) => Code::Int(self.argument(args, 0).map(f)),
+            Behaviour::Int2(f) => Code::Int(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Long1(f) => Code::Long(self.argument(args, 0).map(f)),
+            Behaviour::Long2(f) => Code::Long(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Float1(f) => Code::Float(self.argument(args, 0).map(f)),
+            Behaviour::Float2(f) => Code::Float(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Double1(f) => Code::Double(self.argument(args, 0).map(f)),
+            Behaviour::Double2(f) => Code::Double(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::FloatToInt(f) => Code::Int(self.argument(args, 0).map(f)),
+            Behaviour::DoubleToLong(f) => Code::Long(self.argument(args, 0).map(f)),
+            Behaviour::Native(native) => self.native(native, args, ty, span),
+        }
+    }
+
+    fn argument<T: Access>(&self, args: &[Expr], index: usize) -> Source<T> {
+        args.get(index).map_or_else(|| Source::Constant(T::default()), |arg| self.source(arg))
+    }
+
+    fn native(&self, native: Native, args: &[Expr], ty: &Type, span: Span) -> Code {
+        let args = self.values(args);
+        let call = move |program: &Program, machine: &mut Machine| {
+            with_arguments(&args, program, machine, |machine, args| {
+                native(&mut Context { program, machine, span }, args)
+            })
+        };
+        if *ty == Type::Void {
+            return Code::void(move |p, m| call(p, m).map(drop));
+        }
+        let source = Source::code(call);
+        with_kind!(ty, self.unboxed_result(source))
+    }
+
+    fn unboxed_result<T: Access>(&self, source: Source<Value>) -> Code {
+        T::into_code(source.map(|value| T::unboxed(&value)))
+    }
+}
+
+/// Evaluates arguments into an array on Rust's stack and calls `f` with them.
+fn with_arguments<R>(
+    args: &[Source<Value>],
+    program: &Program,
+    machine: &mut Machine,
+    f: impl FnOnce(&mut Machine, &[Value]) -> Result<R, Trap>,
+) -> Result<R, Trap> {
+    let mut values: [Value; MAX_ARGUMENTS] = Default::default();
+    for (value, arg) in values.iter_mut().zip(args) {
+        *value = arg.get(program, machine)?;
+    }
+    f(machine, values.get(..args.len()).unwrap_or(&values))
+}

@@ -1,0 +1,214 @@
+//! Lists and maps.
+
+use super::{Arguments, Context, new_object};
+use crate::eval::machine::out_of_bounds;
+use crate::eval::object::{Data, List};
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+use crate::library::ClassId;
+
+/// What an element of a list, and an entry of a map, is counted as in the memory budget, in bytes.
+const ELEMENT_BYTES: u64 = 32;
+const ENTRY_BYTES: u64 = 128;
+
+pub(super) fn make_list(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
+    Ok(new_object(class, Data::List(List::default())))
+}
+
+pub(super) fn make_list_copy(cx: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    let mut list = List { values: elements(cx, args, 0)?, ..List::default() };
+    pay(cx, &mut list)?;
+    Ok(new_object(class, Data::List(list)))
+}
+
+pub(super) fn make_map(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
+    Ok(new_object(class, Data::Map(Box::default())))
+}
+
+/// A copy of the elements of the collection at `index`.
+fn elements(cx: &Context<'_>, args: &[Value], index: usize) -> Result<Vec<Value>, Trap> {
+    Ok(match &*cx.object(args, index)?.lock() {
+        Data::List(list) => list.values.clone(),
+        Data::Map(map) => map.entries().map(|(key, _)| key.clone()).collect(),
+        _ => vec![],
+    })
+}
+
+/// Works on the elements of the list that is the receiver.
+fn on_list<T: Default>(
+    cx: &Context<'_>,
+    args: &[Value],
+    f: impl FnOnce(&mut List) -> Result<T, Trap>,
+) -> Result<T, Trap> {
+    match &mut *cx.object(args, 0)?.lock() {
+        Data::List(list) => f(list),
+        _ => Ok(T::default()),
+    }
+}
+
+/// Takes a share of the memory budget when a list has outgrown the one it has; it then has room to double.
+fn pay(cx: &Context<'_>, list: &mut List) -> Result<(), Trap> {
+    let needed = ELEMENT_BYTES * list.values.len() as u64;
+    if needed > list.charge.bytes() {
+        list.charge = cx.machine.charge(2 * needed).map_err(|trap| trap.at(cx.span))?;
+    }
+    Ok(())
+}
+
+fn checked(cx: &Context<'_>, index: i32, n: usize) -> Result<usize, Trap> {
+    let place = usize::try_from(index).ok().filter(|&i| i < n);
+    place.ok_or_else(|| out_of_bounds(ClassId::IndexOutOfBoundsException, i64::from(index), n, cx.span))
+}
+
+pub(super) fn size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let n = on_list(cx, args, |list| Ok(list.values.len()))?;
+    Ok(Value::Int(i32::try_from(n).unwrap_or(i32::MAX)))
+}
+
+pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| Ok(Value::Boolean(list.values.is_empty())))
+}
+
+pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let wanted = args.at(1);
+    Ok(Value::Boolean(elements(cx, args, 0)?.iter().any(|v| v.equals(wanted))))
+}
+
+pub(super) fn add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        list.values.push(args.at(1).clone());
+        pay(cx, list)?;
+        Ok(Value::Boolean(true))
+    })
+}
+
+pub(super) fn insert(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let place = checked(cx, args.int(1), list.values.len() + 1)?;
+        list.values.insert(place, args.at(2).clone());
+        pay(cx, list)?;
+        Ok(Value::Null)
+    })
+}
+
+pub(super) fn add_all(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let added = elements(cx, args, 1)?;
+    on_list(cx, args, |list| {
+        let is_changed = !added.is_empty();
+        list.values.extend(added);
+        pay(cx, list)?;
+        Ok(Value::Boolean(is_changed))
+    })
+}
+
+pub(super) fn get(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let place = checked(cx, args.int(1), list.values.len())?;
+        Ok(list.values[place].clone())
+    })
+}
+
+pub(super) fn set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let place = checked(cx, args.int(1), list.values.len())?;
+        Ok(std::mem::replace(&mut list.values[place], args.at(2).clone()))
+    })
+}
+
+pub(super) fn remove_at(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let place = checked(cx, args.int(1), list.values.len())?;
+        Ok(list.values.remove(place))
+    })
+}
+
+fn index_of_equal(cx: &Context<'_>, args: &[Value]) -> Result<Option<usize>, Trap> {
+    let wanted = args.at(1);
+    Ok(elements(cx, args, 0)?.iter().position(|v| v.equals(wanted)))
+}
+
+pub(super) fn remove(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let found = index_of_equal(cx, args)?;
+    on_list(cx, args, |list| {
+        if let Some(place) = found {
+            list.values.remove(place);
+        }
+        Ok(Value::Boolean(found.is_some()))
+    })
+}
+
+pub(super) fn index_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let found = index_of_equal(cx, args)?;
+    Ok(Value::Int(found.and_then(|i| i32::try_from(i).ok()).unwrap_or(-1)))
+}
+
+pub(super) fn clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let old = on_list(cx, args, |list| Ok(std::mem::take(list)))?;
+    drop(old);
+    Ok(Value::Null)
+}
+
+/// Works on the map that is the receiver.
+fn on_map<T: Default>(
+    cx: &Context<'_>,
+    args: &[Value],
+    f: impl FnOnce(&mut crate::eval::map::JavaMap) -> Result<T, Trap>,
+) -> Result<T, Trap> {
+    match &mut *cx.object(args, 0)?.lock() {
+        Data::Map(map) => f(map),
+        _ => Ok(T::default()),
+    }
+}
+
+pub(super) fn put(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| {
+        let old = map.insert(args.at(1).clone(), args.at(2).clone());
+        let needed = ENTRY_BYTES * map.len() as u64;
+        if needed > map.charge.bytes() {
+            map.charge = cx.machine.charge(2 * needed).map_err(|trap| trap.at(cx.span))?;
+        }
+        Ok(old.unwrap_or_default())
+    })
+}
+
+pub(super) fn get_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| Ok(map.get(args.at(1)).cloned().unwrap_or_default()))
+}
+
+pub(super) fn contains_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| Ok(Value::Boolean(map.get(args.at(1)).is_some())))
+}
+
+pub(super) fn remove_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| Ok(map.remove(args.at(1)).unwrap_or_default()))
+}
+
+pub(super) fn map_size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| Ok(Value::Int(i32::try_from(map.len()).unwrap_or(i32::MAX))))
+}
+
+pub(super) fn map_is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| Ok(Value::Boolean(map.is_empty())))
+}
+
+pub(super) fn map_clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let old = on_map(cx, args, |map| Ok(std::mem::take(map)))?;
+    drop(old);
+    Ok(Value::Null)
+}
+
+pub(super) fn key_set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let keys = on_map(cx, args, |map| Ok(map.entries().map(|(key, _)| key.clone()).collect()))?;
+    list_of(cx, keys)
+}
+
+pub(super) fn map_values(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let values = on_map(cx, args, |map| Ok(map.entries().map(|(_, value)| value.clone()).collect()))?;
+    list_of(cx, values)
+}
+
+fn list_of(cx: &Context<'_>, values: Vec<Value>) -> Result<Value, Trap> {
+    let mut list = List { values, ..List::default() };
+    pay(cx, &mut list)?;
+    Ok(new_object(ClassId::ArrayList, Data::List(list)))
+}

@@ -1,0 +1,60 @@
+//! Behaviour of every constructor.
+
+use std::sync::Arc;
+
+use super::{Arguments, Context, Maker, collections, light, new_object, random, shaders, strings, vectors};
+use crate::eval::object::Data;
+use crate::eval::text::Text;
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+use crate::library::{ClassId, ConstructorId as C};
+
+/// What a constructor makes. One arm per row of the table, in its order.
+pub fn constructor(id: C) -> Maker {
+    match id {
+        C::Tuple => vectors::make_zero,
+        C::TupleOf => vectors::make,
+        C::TupleCopy => vectors::make_copy,
+        C::RgbColor => shaders::make_color,
+        C::Graytone => shaders::make_graytone,
+        C::Shader => shaders::make_gray,
+        C::ShaderRgb => shaders::make_rgb,
+        C::ShaderRgba => shaders::make_rgba,
+        C::Phong => shaders::make_phong,
+        C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,
+        C::DirectionalLight | C::Sky => light::make_distant,
+        C::LightModel | C::LightModelOf => light::make_model,
+        C::Random => random::make,
+        C::RandomSeed => random::make_seeded,
+        C::Integer | C::Long | C::Double | C::Boolean | C::Character => boxed,
+        C::Float => boxed_float,
+        C::List | C::ListCapacity => collections::make_list,
+        C::ListCopy => collections::make_list_copy,
+        C::Map => collections::make_map,
+        C::Buffer | C::BufferText | C::Builder | C::BuilderText => strings::make_buffer,
+        C::Throwable => throwable,
+        C::ThrowableText => throwable_with_text,
+        C::String => strings::make_empty,
+        C::StringCopy => strings::make_copy,
+    }
+}
+
+fn boxed(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    Ok(args.at(0).clone())
+}
+
+fn boxed_float(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Float(args.float(0)))
+}
+
+fn throwable(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
+    Ok(new_object(class, Data::Throwable(None)))
+}
+
+fn throwable_with_text(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    let message = match args.at(0) {
+        Value::Text(text) => Some(Arc::<Text>::clone(text)),
+        _ => None,
+    };
+    Ok(new_object(class, Data::Throwable(message)))
+}

@@ -1,0 +1,178 @@
+//! Behaviour of every method.
+
+use super::Behaviour::{self, Native};
+use super::{Arguments, Context, collections, getter, light, numbers, random, setter, shaders, strings, system, vectors};
+use crate::eval::object::Data;
+use crate::eval::trap::{Trap, describe};
+use crate::eval::value::Value;
+use crate::library::MethodId as M;
+
+/// What a method does; the receiver is its first argument. One arm per row of the table, in its order.
+pub fn method(id: M) -> Behaviour {
+    Native(match id {
+        M::ObjectEquals => equals,
+        M::ObjectToString => strings::value_of,
+        M::ObjectHashCode => hash_code,
+        M::StringLength => strings::length,
+        M::StringCharAt => strings::char_at,
+        M::StringSubstring => strings::substring,
+        M::StringSubstringTo => strings::substring_to,
+        M::StringIndexOf => strings::index_of,
+        M::StringIndexOfFrom => strings::index_of_from,
+        M::StringIndexOfChar => strings::index_of_char,
+        M::StringLastIndexOf => strings::last_index_of,
+        M::StringEqualsIgnoreCase => strings::equals_ignore_case,
+        M::StringCompareTo => strings::compare_to,
+        M::StringToUpperCase => strings::to_upper_case,
+        M::StringToLowerCase => strings::to_lower_case,
+        M::StringTrim => strings::trim,
+        M::StringStartsWith => strings::starts_with,
+        M::StringEndsWith => strings::ends_with,
+        M::StringContains => strings::contains,
+        M::StringReplace => strings::replace,
+        M::StringReplaceChar => strings::replace_char,
+        M::StringIsEmpty => strings::is_empty,
+        M::StringSplit => strings::split,
+        M::StringConcat => strings::concat,
+        M::StringToCharArray => strings::to_char_array,
+        M::TupleX => |cx, args| get(cx, args, M::TupleX),
+        M::TupleY => |cx, args| get(cx, args, M::TupleY),
+        M::TupleZ => |cx, args| get(cx, args, M::TupleZ),
+        M::TupleSetX => |cx, args| set(cx, args, M::TupleSetX),
+        M::TupleSetY => |cx, args| set(cx, args, M::TupleSetY),
+        M::TupleSetZ => |cx, args| set(cx, args, M::TupleSetZ),
+        M::TupleSet => vectors::set,
+        M::TupleSetTuple => vectors::set_tuple,
+        M::TupleAdd => vectors::add,
+        M::TupleAddOf => vectors::add_of,
+        M::TupleSub => vectors::sub,
+        M::TupleSubOf => vectors::sub_of,
+        M::TupleScale => vectors::scale,
+        M::TupleScaleOf => vectors::scale_of,
+        M::TupleScaleAdd => vectors::scale_add,
+        M::TupleNegate => vectors::negate,
+        M::TupleInterpolate => vectors::interpolate,
+        M::VectorLength => vectors::length,
+        M::VectorLengthSquared => vectors::length_squared,
+        M::VectorNormalize => vectors::normalize,
+        M::VectorNormalizeOf => vectors::normalize_of,
+        M::VectorDot | M::VectorTimesVector => vectors::dot,
+        M::VectorCross => vectors::cross,
+        M::VectorAngle => vectors::angle,
+        M::PointDistance => vectors::distance,
+        M::PointDistanceSquared => vectors::distance_squared,
+        M::VectorPlus => vectors::vector_plus,
+        M::PointPlus => vectors::point_plus,
+        M::VectorMinus | M::PointMinusPoint => vectors::vector_minus,
+        M::PointMinusVector => vectors::point_minus,
+        M::VectorTimes => vectors::times,
+        M::VectorOver => vectors::over,
+        M::SpectrumIntegrate => vectors::integrate,
+        M::ShaderAverageColor => shaders::average_color,
+        M::ShaderRed => |cx, args| get(cx, args, M::ShaderRed),
+        M::ShaderGreen => |cx, args| get(cx, args, M::ShaderGreen),
+        M::ShaderBlue => |cx, args| get(cx, args, M::ShaderBlue),
+        M::ShaderAlpha => |cx, args| get(cx, args, M::ShaderAlpha),
+        M::ShaderSetRed => |cx, args| set(cx, args, M::ShaderSetRed),
+        M::ShaderSetGreen => |cx, args| set(cx, args, M::ShaderSetGreen),
+        M::ShaderSetBlue => |cx, args| set(cx, args, M::ShaderSetBlue),
+        M::ShaderSetAlpha => |cx, args| set(cx, args, M::ShaderSetAlpha),
+        M::PhongSetDiffuse => shaders::set_diffuse,
+        M::PhongSetSpecular => shaders::set_specular,
+        M::PhongSetShininess => shaders::set_shininess_map,
+        M::PhongSetShininessValue => shaders::set_shininess,
+        M::PhongSetTransparency => shaders::set_transparency,
+        M::PhongSetDiffuseTransparency => shaders::set_diffuse_transparency,
+        M::PhongSetAmbient => shaders::set_ambient,
+        M::PhongSetEmissive => shaders::set_emissive,
+        M::LightSetColor => light::set_color,
+        M::LightSetColorMap => light::set_color_map,
+        M::LightSetShadowless => system::nothing,
+        M::PointLightSetPower
+        | M::DirectionalLightSetPowerDensity
+        | M::AreaLightSetPower
+        | M::SkySetPowerDensity => light::set_power,
+        M::SpotLightSetInnerAngle => light::set_inner_angle,
+        M::SpotLightSetOuterAngle => light::set_outer_angle,
+        M::AreaLightSetExponent => light::set_exponent,
+        M::LightModelSetSeed => light::set_seed,
+        M::LightModelSetRayCount => light::set_ray_count,
+        M::LightModelSetDepth => light::set_depth,
+        M::LightModelCompute | M::LightModelAbsorbedPower | M::LightModelAbsorbedPower3d => light::unsupported,
+        M::RandomSetSeed => random::own_set_seed,
+        M::RandomNextInt => random::own_int,
+        M::RandomNextIntBelow => random::own_int_below,
+        M::RandomNextLong => random::own_long,
+        M::RandomNextFloat => random::own_float,
+        M::RandomNextDouble => random::own_double,
+        M::RandomNextBoolean => random::own_boolean,
+        M::RandomNextGaussian => random::own_gaussian,
+        M::NumberIntValue => numbers::int_value,
+        M::NumberLongValue => numbers::long_value,
+        M::NumberFloatValue => numbers::float_value,
+        M::NumberDoubleValue => numbers::double_value,
+        M::BooleanValue | M::CharacterValue => numbers::same,
+        M::CollectionSize => collections::size,
+        M::CollectionIsEmpty => collections::is_empty,
+        M::CollectionContains => collections::contains,
+        M::ListAdd => collections::add,
+        M::ListInsert => collections::insert,
+        M::ListAddAll => collections::add_all,
+        M::ListGet => collections::get,
+        M::ListSet => collections::set,
+        M::ListRemoveAt => collections::remove_at,
+        M::ListRemove => collections::remove,
+        M::ListIndexOf => collections::index_of,
+        M::ListClear => collections::clear,
+        M::MapPut => collections::put,
+        M::MapGet => collections::get_key,
+        M::MapContainsKey => collections::contains_key,
+        M::MapRemove => collections::remove_key,
+        M::MapSize => collections::map_size,
+        M::MapIsEmpty => collections::map_is_empty,
+        M::MapClear => collections::map_clear,
+        M::MapKeySet => collections::key_set,
+        M::MapValues => collections::map_values,
+        M::BufferAppend | M::BuilderAppend => strings::append,
+        M::BufferLength | M::BuilderLength => strings::buffer_length,
+        M::ThrowableMessage => message,
+        M::ThrowablePrintStackTrace => print_stack_trace,
+    })
+}
+
+fn get(cx: &Context<'_>, args: &[Value], id: M) -> Result<Value, Trap> {
+    Ok(getter(id)(&cx.object(args, 0)?.lock()))
+}
+
+fn set(cx: &Context<'_>, args: &[Value], id: M) -> Result<Value, Trap> {
+    setter(id)(&mut cx.object(args, 0)?.lock(), args.at(1));
+    Ok(Value::Null)
+}
+
+fn equals(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    if matches!(args.at(0), Value::Null) {
+        return Err(Trap::null("call `equals` of an object", cx.span));
+    }
+    Ok(Value::Boolean(args.at(0).equals(args.at(1))))
+}
+
+fn hash_code(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    if matches!(args.at(0), Value::Null) {
+        return Err(Trap::null("call `hashCode` of an object", cx.span));
+    }
+    Ok(Value::Int(args.at(0).hash_code()))
+}
+
+/// The message of an exception, null if it has none.
+fn message(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(match &*cx.object(args, 0)?.lock() {
+        Data::Throwable(Some(text)) => Value::Text(text.clone()),
+        _ => Value::Null,
+    })
+}
+
+fn print_stack_trace(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let line = describe(args.at(0)) + "\n";
+    cx.machine.print(&line);
+    Ok(Value::Null)
+}

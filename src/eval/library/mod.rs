@@ -1,0 +1,163 @@
+//! What the functions, methods and constructors of the library do.
+//!
+//! [`functions`], [`methods`] and [`constructors`] map every number of the library's tables to a [`Behaviour`], by an
+//! exhaustive `match`: an entry of the table without behaviour does not compile. Arithmetic stays unboxed; the rest takes
+//! and gives boxed values, receiver first.
+
+mod collections;
+mod constructors;
+mod format;
+mod functions;
+mod light;
+mod methods;
+mod numbers;
+mod places;
+mod random;
+mod shaders;
+mod strings;
+mod system;
+mod vectors;
+
+use std::sync::Arc;
+
+use super::machine::Machine;
+use super::object::{Data, Object};
+use super::program::Program;
+use super::trap::Trap;
+use super::value::Value;
+use crate::diag::Span;
+use crate::graph::NodeId;
+use crate::library::{ClassId, MethodId};
+
+pub use constructors::constructor;
+pub use functions::function;
+pub use methods::method;
+
+/// Where a library function runs.
+pub struct Context<'a> {
+    /// The program that calls it.
+    pub program: &'a Program,
+    /// The machine it runs on.
+    pub machine: &'a mut Machine,
+    /// The call.
+    pub span: Span,
+}
+
+/// A library function on boxed values; a method finds its receiver first.
+pub type Native = fn(&mut Context<'_>, &[Value]) -> Result<Value, Trap>;
+/// The constructor of a class.
+pub type Maker = fn(&mut Context<'_>, ClassId, &[Value]) -> Result<Value, Trap>;
+/// Reads a public field of a library object.
+pub type Getter = fn(&Data) -> Value;
+/// Writes a public field of a library object.
+pub type Setter = fn(&mut Data, &Value);
+
+/// What a function or method does.
+#[derive(Clone, Copy)]
+#[allow(missing_docs, reason = "the names are those of the types of arguments and result")]
+pub enum Behaviour {
+    Int1(fn(i32) -> i32),
+    Int2(fn(i32, i32) -> i32),
+    Long1(fn(i64) -> i64),
+    Long2(fn(i64, i64) -> i64),
+    Float1(fn(f32) -> f32),
+    Float2(fn(f32, f32) -> f32),
+    Double1(fn(f64) -> f64),
+    Double2(fn(f64, f64) -> f64),
+    FloatToInt(fn(f32) -> i32),
+    DoubleToLong(fn(f64) -> i64),
+    Native(Native),
+}
+
+/// The getter behind a method of a public field.
+pub fn getter(id: MethodId) -> Getter {
+    match id {
+        MethodId::TupleX => vectors::x,
+        MethodId::TupleY => vectors::y,
+        MethodId::TupleZ => vectors::z,
+        MethodId::ShaderRed => shaders::red,
+        MethodId::ShaderGreen => shaders::green,
+        MethodId::ShaderBlue => shaders::blue,
+        MethodId::ShaderAlpha => shaders::alpha,
+        _ => |_| Value::Null,
+    }
+}
+
+/// The setter behind a method of a public field.
+pub fn setter(id: MethodId) -> Setter {
+    match id {
+        MethodId::TupleSetX => vectors::set_x,
+        MethodId::TupleSetY => vectors::set_y,
+        MethodId::TupleSetZ => vectors::set_z,
+        MethodId::ShaderSetRed => shaders::set_red,
+        MethodId::ShaderSetGreen => shaders::set_green,
+        MethodId::ShaderSetBlue => shaders::set_blue,
+        MethodId::ShaderSetAlpha => shaders::set_alpha,
+        _ => |_, _| {},
+    }
+}
+
+/// Arguments by place and type. The checker has converted them, so a missing or foreign one reads as zero or null.
+trait Arguments {
+    fn at(&self, index: usize) -> &Value;
+
+    fn int(&self, index: usize) -> i32 {
+        self.at(index).as_int().unwrap_or_default()
+    }
+
+    fn long(&self, index: usize) -> i64 {
+        self.at(index).as_long().unwrap_or_default()
+    }
+
+    fn float(&self, index: usize) -> f32 {
+        self.at(index).as_float().unwrap_or_default()
+    }
+
+    fn double(&self, index: usize) -> f64 {
+        self.at(index).as_double().unwrap_or_default()
+    }
+
+    fn boolean(&self, index: usize) -> bool {
+        self.at(index).as_boolean().unwrap_or_default()
+    }
+
+    /// The text of an argument of type `String`, `null` for null.
+    fn text(&self, index: usize) -> &str {
+        self.at(index).as_text().map_or("null", |t| t.as_str())
+    }
+}
+
+impl Arguments for [Value] {
+    fn at(&self, index: usize) -> &Value {
+        self.get(index).unwrap_or(&Value::Null)
+    }
+}
+
+impl Context<'_> {
+    /// The library object at `index`.
+    fn object<'v>(&self, args: &'v [Value], index: usize) -> Result<&'v Arc<Object>, Trap> {
+        args.at(index).as_object().ok_or_else(|| Trap::null("use an object", self.span))
+    }
+
+    /// The node at `index`.
+    fn node(&self, args: &[Value], index: usize) -> Result<NodeId, Trap> {
+        match args.at(index) {
+            Value::Node(node) => Ok(*node),
+            _ => Err(Trap::null("use a node", self.span)),
+        }
+    }
+
+    /// A new text.
+    fn new_text(&self, text: impl Into<String>) -> Result<Value, Trap> {
+        self.machine.new_text(text.into()).map_err(|trap| trap.at(self.span))
+    }
+
+    fn exception(&self, class: ClassId, message: impl Into<Box<str>>) -> Trap {
+        Trap::exception(class, message, self.span)
+    }
+}
+
+/// A new object of a library class.
+fn new_object(class: ClassId, data: Data) -> Value {
+    Value::Object(Arc::new(Object::new(class, data)))
+}

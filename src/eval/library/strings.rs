@@ -1,0 +1,231 @@
+//! Texts, characters, and buffers of text.
+
+use super::{Arguments, Context, new_object};
+use crate::eval::array::{Array, Elements};
+use crate::eval::machine::out_of_bounds;
+use crate::eval::memory::Charge;
+use crate::eval::object::Data;
+use crate::eval::text::{Text, char_of};
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+use crate::library::ClassId;
+use std::sync::Arc;
+use std::sync::Mutex;
+use std::sync::atomic::AtomicU16;
+
+/// The receiver.
+fn receiver<'v>(cx: &Context<'_>, args: &'v [Value]) -> Result<&'v Text, Trap> {
+    args.at(0).as_text().ok_or_else(|| Trap::null("use a text", cx.span))
+}
+
+/// The first argument behind the receiver, which must not be null.
+fn other<'v>(cx: &Context<'_>, args: &'v [Value]) -> Result<&'v str, Trap> {
+    args.at(1).as_text().map(Text::as_str).ok_or_else(|| Trap::null("use a text", cx.span))
+}
+
+fn place(found: Option<usize>) -> Value {
+    Value::Int(found.and_then(|at| i32::try_from(at).ok()).unwrap_or(-1))
+}
+
+pub(super) fn make_empty(_: &mut Context<'_>, _: ClassId, _: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::text(""))
+}
+
+pub(super) fn make_copy(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    Ok(args.at(0).clone())
+}
+
+pub(super) fn value_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    if args.at(0).as_text().is_some() {
+        return Ok(args.at(0).clone());
+    }
+    let mut text = String::new();
+    cx.machine.append_text(args.at(0), &mut text);
+    cx.new_text(text)
+}
+
+pub(super) fn length(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Int(i32::try_from(receiver(cx, args)?.len()).unwrap_or(i32::MAX)))
+}
+
+pub(super) fn char_at(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, index) = (receiver(cx, args)?, args.int(1));
+    let unit = usize::try_from(index).ok().and_then(|i| text.unit(i));
+    let class = ClassId::StringIndexOutOfBoundsException;
+    unit.map(Value::Char).ok_or_else(|| out_of_bounds(class, i64::from(index), text.len(), cx.span))
+}
+
+pub(super) fn substring(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let end = i32::try_from(receiver(cx, args)?.len()).unwrap_or(i32::MAX);
+    slice(cx, args, args.int(1), end)
+}
+
+pub(super) fn substring_to(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    slice(cx, args, args.int(1), args.int(2))
+}
+
+fn slice(cx: &Context<'_>, args: &[Value], begin: i32, end: i32) -> Result<Value, Trap> {
+    let text = receiver(cx, args)?;
+    let part = usize::try_from(begin).ok().zip(usize::try_from(end).ok()).and_then(|(a, b)| text.slice(a, b));
+    match part {
+        Some(part) => cx.new_text(part),
+        None => {
+            let message = format!("begin {begin}, end {end}, length {}", text.len());
+            Err(cx.exception(ClassId::StringIndexOutOfBoundsException, message))
+        }
+    }
+}
+
+pub(super) fn index_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(place(receiver(cx, args)?.find(other(cx, args)?, 0)))
+}
+
+pub(super) fn index_of_from(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let from = usize::try_from(args.int(2)).unwrap_or(0);
+    Ok(place(receiver(cx, args)?.find(other(cx, args)?, from)))
+}
+
+pub(super) fn index_of_char(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let wanted = char_of(args.int(1) as u16).to_string();
+    Ok(place(receiver(cx, args)?.find(&wanted, 0)))
+}
+
+pub(super) fn last_index_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(place(receiver(cx, args)?.rfind(other(cx, args)?)))
+}
+
+pub(super) fn equals_ignore_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let text = receiver(cx, args)?.as_str();
+    let is_equal = args.at(1).as_text().is_some_and(|t| t.as_str().to_lowercase() == text.to_lowercase());
+    Ok(Value::Boolean(is_equal))
+}
+
+/// Difference of the first units that differ, else of the lengths.
+pub(super) fn compare_to(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (a, b) = (receiver(cx, args)?.as_str(), other(cx, args)?);
+    let mut pairs = a.encode_utf16().zip(b.encode_utf16());
+    let difference = pairs.find(|(a, b)| a != b).map(|(a, b)| i32::from(a) - i32::from(b));
+    let length = |text: &str| i32::try_from(text.encode_utf16().count()).unwrap_or(i32::MAX);
+    Ok(Value::Int(difference.unwrap_or_else(|| length(a) - length(b))))
+}
+
+pub(super) fn to_upper_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text(receiver(cx, args)?.as_str().to_uppercase())
+}
+
+pub(super) fn to_lower_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text(receiver(cx, args)?.as_str().to_lowercase())
+}
+
+/// Java trims everything up to the blank.
+pub(super) fn trim(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text(receiver(cx, args)?.as_str().trim_matches(|c| c <= ' '))
+}
+
+pub(super) fn starts_with(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(receiver(cx, args)?.as_str().starts_with(other(cx, args)?)))
+}
+
+pub(super) fn ends_with(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(receiver(cx, args)?.as_str().ends_with(other(cx, args)?)))
+}
+
+pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(receiver(cx, args)?.as_str().contains(other(cx, args)?)))
+}
+
+pub(super) fn replace(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, from, to) = (receiver(cx, args)?.as_str(), other(cx, args)?, args.text(2));
+    // Grows by this much at most; refuse before the text is made.
+    let n_found = text.matches(from).count();
+    cx.machine.check_text(text.len().saturating_add(n_found.saturating_mul(to.len()))).map_err(|t| t.at(cx.span))?;
+    cx.new_text(text.replace(from, to))
+}
+
+pub(super) fn replace_char(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let [from, to] = [1, 2].map(|i| char_of(args.int(i) as u16));
+    let text: String = receiver(cx, args)?.as_str().chars().map(|c| if c == from { to } else { c }).collect();
+    cx.new_text(text)
+}
+
+pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(receiver(cx, args)?.is_empty()))
+}
+
+/// Parts between occurrences of a plain separator (of the regular expressions only `\\s+`, `\\t`, `\\|`, `\\.` and their
+/// kin are known); empty parts at the end are dropped.
+pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, separator) = (receiver(cx, args)?.as_str(), other(cx, args)?);
+    let mut parts: Vec<&str> = match separator {
+        "\\s+" | " +" | "\\s" | "[ ]+" => split_at_blanks(text),
+        "\\t" => text.split('\t').collect(),
+        "" => text.split_inclusive(|_| true).collect(),
+        literal => match literal.strip_prefix('\\') {
+            Some(escaped) if escaped.chars().count() == 1 => text.split(escaped).collect(),
+            _ => text.split(literal).collect(),
+        },
+    };
+    while parts.len() > 1 && parts.last().is_some_and(|part| part.is_empty()) {
+        parts.pop();
+    }
+    let charge = cx.machine.charge(64 * parts.len() as u64).map_err(|trap| trap.at(cx.span))?;
+    let elements: Vec<Mutex<Value>> = parts.iter().map(|part| Mutex::new(Value::text(*part))).collect();
+    Ok(Value::Array(Arc::new(Array::new(Elements::Reference(elements.into()), charge))))
+}
+
+/// A text that begins with blanks has an empty first part, as in Java.
+fn split_at_blanks(text: &str) -> Vec<&str> {
+    let first = text.starts_with(char::is_whitespace).then_some("");
+    first.into_iter().chain(text.split_whitespace()).collect()
+}
+
+pub(super) fn concat(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text([receiver(cx, args)?.as_str(), other(cx, args)?].concat())
+}
+
+pub(super) fn to_char_array(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let text = receiver(cx, args)?;
+    let charge = cx.machine.charge(2 * text.len() as u64).map_err(|trap| trap.at(cx.span))?;
+    let units = text.as_str().encode_utf16().map(AtomicU16::new).collect();
+    Ok(Value::Array(Arc::new(Array::new(Elements::Char(units), charge))))
+}
+
+pub(super) fn is_digit(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(char_of(args.int(0) as u16).is_ascii_digit()))
+}
+
+pub(super) fn is_letter(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(char_of(args.int(0) as u16).is_alphabetic()))
+}
+
+pub(super) fn is_whitespace(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(char_of(args.int(0) as u16).is_whitespace()))
+}
+
+pub(super) fn make_buffer(cx: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    let text = if args.is_empty() { "" } else { other(cx, &[Value::Null, args.at(0).clone()]).map(|_| args.text(0))? };
+    Ok(new_object(class, Data::Buffer(text.to_owned(), Charge::none())))
+}
+
+pub(super) fn append(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let mut added = String::new();
+    cx.machine.append_text(args.at(1), &mut added);
+    if let Data::Buffer(text, charge) = &mut *cx.object(args, 0)?.lock() {
+        let n_bytes = text.len() + added.len();
+        cx.machine.check_text(n_bytes).map_err(|trap| trap.at(cx.span))?;
+        // The share grows in doublings, as the buffer does.
+        if n_bytes as u64 > charge.bytes() {
+            *charge = cx.machine.charge(2 * n_bytes as u64).map_err(|trap| trap.at(cx.span))?;
+        }
+        text.push_str(&added);
+    }
+    Ok(args.at(0).clone())
+}
+
+pub(super) fn buffer_length(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let length = match &*cx.object(args, 0)?.lock() {
+        Data::Buffer(text, _) => text.encode_utf16().count(),
+        _ => 0,
+    };
+    Ok(Value::Int(i32::try_from(length).unwrap_or(i32::MAX)))
+}

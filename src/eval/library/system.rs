@@ -1,0 +1,56 @@
+//! Printing, steps, time.
+
+use super::{Arguments, Context};
+use crate::eval::trap::Trap;
+use crate::eval::value::Value;
+
+pub(super) fn nothing(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Null)
+}
+
+pub(super) fn println(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    cx.machine.print("\n");
+    Ok(Value::Null)
+}
+
+pub(super) fn println_text(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let mut line = String::new();
+    cx.machine.append_text(args.at(0), &mut line);
+    line.push('\n');
+    cx.machine.print(&line);
+    Ok(Value::Null)
+}
+
+pub(super) fn print_text(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let mut text = String::new();
+    cx.machine.append_text(args.at(0), &mut text);
+    cx.machine.print(&text);
+    Ok(Value::Null)
+}
+
+/// Applies what the rules have queued.
+pub(super) fn derive(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    cx.machine.derive(cx.span)?;
+    Ok(Value::Null)
+}
+
+/// Starts the model again from an empty graph.
+pub(super) fn reset(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    cx.machine.clear(cx.program).map_err(|trap| trap.at(cx.span))?;
+    cx.program.run_init(cx.machine, cx.span)?;
+    Ok(Value::Null)
+}
+
+pub(super) fn set_derivation_mode(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.machine.derivation_mode = args.int(0);
+    Ok(Value::Null)
+}
+
+pub(super) fn derivation_mode(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Int(cx.machine.derivation_mode))
+}
+
+/// Growth knows no clock, so that a run repeats: time is the number of the step, in milliseconds.
+pub(super) fn time(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Long(i64::try_from(cx.machine.step).unwrap_or(i64::MAX)))
+}
