@@ -21,6 +21,8 @@ pub trait Access: FromCode {
     fn element(array: &Array, index: usize) -> Option<Self>;
     /// Writes an element; `None` if the index is out of bounds.
     fn set_element(self, array: &Array, index: usize) -> Option<()>;
+    /// Whether a pattern that asks for `other` is satisfied with this value.
+    fn is_equal(&self, other: &Self) -> bool;
 }
 
 /// Pastes the field accessors of a kind that the graph knows by name.
@@ -39,6 +41,10 @@ macro_rules! field_access {
 impl Access for bool {
     field_access!(get_bool, set_bool);
 
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
+
     fn element(array: &Array, index: usize) -> Option<Self> {
         match array.elements() {
             Elements::Boolean(e) => Some(e.get(index)?.load(Relaxed) != 0),
@@ -56,6 +62,10 @@ impl Access for bool {
 
 impl Access for i32 {
     field_access!(get_i32, set_i32);
+
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
 
     #[inline]
     fn element(array: &Array, index: usize) -> Option<Self> {
@@ -84,6 +94,10 @@ impl Access for i32 {
 impl Access for i64 {
     field_access!(get_i64, set_i64);
 
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
+
     fn element(array: &Array, index: usize) -> Option<Self> {
         match array.elements() {
             Elements::Long(e) => Some(e.get(index)?.load(Relaxed)),
@@ -101,6 +115,10 @@ impl Access for i64 {
 
 impl Access for f32 {
     field_access!(get_f32, set_f32);
+
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
 
     #[inline]
     fn element(array: &Array, index: usize) -> Option<Self> {
@@ -122,6 +140,10 @@ impl Access for f32 {
 impl Access for f64 {
     field_access!(get_f64, set_f64);
 
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
+
     #[inline]
     fn element(array: &Array, index: usize) -> Option<Self> {
         match array.elements() {
@@ -142,6 +164,10 @@ impl Access for f64 {
 impl Access for Value {
     field_access!(get_object, set_object);
 
+    fn is_equal(&self, other: &Self) -> bool {
+        self.equals(other)
+    }
+
     fn element(array: &Array, index: usize) -> Option<Self> {
         array.get(index)
     }
@@ -158,6 +184,10 @@ impl Access for Value {
 }
 
 impl Access for Option<NodeId> {
+    fn is_equal(&self, other: &Self) -> bool {
+        self == other
+    }
+
     fn field(graph: &Graph<Value>, node: NodeId, field: FieldId) -> Result<Self, GraphError> {
         Ok(graph.peek_object(node, field)?.and_then(Value::as_node))
     }
@@ -177,14 +207,11 @@ impl Access for Option<NodeId> {
 
 impl Payload for Value {
     fn is_null(&self) -> bool {
-        matches!(self, Self::Null)
+        Self::is_null(self)
     }
 
     fn as_node(&self) -> Option<NodeId> {
-        match self {
-            Self::Node(node) => Some(*node),
-            _ => None,
-        }
+        Self::as_node(self)
     }
 
     fn as_vector(&self) -> Option<DVec3> {

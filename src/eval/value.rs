@@ -63,6 +63,19 @@ impl Value {
         }
     }
 
+    /// Whether it is `null`.
+    pub fn is_null(&self) -> bool {
+        matches!(self, Self::Null)
+    }
+
+    /// The node, if it is one.
+    pub fn as_node(&self) -> Option<NodeId> {
+        match self {
+            Self::Node(node) => Some(*node),
+            _ => None,
+        }
+    }
+
     /// The truth value, if it is one.
     pub fn as_boolean(&self) -> Option<bool> {
         match self {

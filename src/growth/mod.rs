@@ -1,1 +1,6 @@
-//! (to be written)
+//! A model while it grows: `init`, one step after the other, and what can be said of the result.
+
+mod deep;
+mod grow;
+
+pub use grow::{Growth, GrowthOptions};

@@ -43,7 +43,7 @@ macro_rules! with_kind {
             Type::Long => $scope.$method::<i64>($($args),*),
             Type::Float => $scope.$method::<f32>($($args),*),
             Type::Double => $scope.$method::<f64>($($args),*),
-            Type::Node(_) => $scope.$method::<Option<NodeId>>($($args),*),
+            Type::Node(_) => $scope.$method::<Option<crate::graph::NodeId>>($($args),*),
             _ => $scope.$method::<Value>($($args),*),
         }
     };

@@ -117,10 +117,6 @@ trait Arguments {
         self.at(index).as_double().unwrap_or_default()
     }
 
-    fn boolean(&self, index: usize) -> bool {
-        self.at(index).as_boolean().unwrap_or_default()
-    }
-
     /// The text of an argument of type `String`, `null` for null.
     fn text(&self, index: usize) -> &str {
         self.at(index).as_text().map_or("null", |t| t.as_str())

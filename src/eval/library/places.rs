@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Arguments, Context, new_object, shaders};
+use super::{Context, new_object, shaders};
 use crate::color::palette::ega;
 use crate::eval::object::Data;
 use crate::eval::trap::Trap;
@@ -109,5 +109,5 @@ pub(super) fn shader(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
 }
 
 pub(super) fn order(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Int(state(cx, args, 0)?.1.order))
+    Ok(Value::Int(i32::try_from(state(cx, args, 0)?.1.order).unwrap_or(i32::MAX)))
 }

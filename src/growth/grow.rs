@@ -1,0 +1,195 @@
+//! The growth of one model.
+
+use std::sync::Arc;
+
+use super::deep::{SHALLOW, with_deep_stack};
+use crate::check::model::{MethodId, Model};
+use crate::diag::{Diagnostic, Span, nearest};
+use crate::eval::{Limits, Machine, Output, Program, Purity, Setup, StopSign, Trap, Value};
+use crate::graph::{Graph, NodeId, TypeId};
+use crate::rewrite::Instantiated;
+
+/// How a model is to grow.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GrowthOptions {
+    /// Seed of the model's generator, until the model sets its own.
+    pub seed: i64,
+    /// Budgets.
+    pub limits: Limits,
+    /// Name of the method that is one step.
+    pub entry: String,
+}
+
+impl Default for GrowthOptions {
+    fn default() -> Self {
+        Self { seed: 0, limits: Limits::default(), entry: "run".to_owned() }
+    }
+}
+
+/// A model and its graph.
+///
+/// Same model, seed and number of steps give the same graph on every machine.
+pub struct Growth {
+    program: Arc<Program>,
+    machine: Machine,
+    options: GrowthOptions,
+    n_steps: u64,
+}
+
+impl Growth {
+    /// A model before `init`. What it prints goes to `output`; `stop` is asked now and then whether to end early.
+    ///
+    /// # Errors
+    /// The graph may not even have its root and axiom.
+    pub fn new(model: &Model, options: GrowthOptions, output: Output, stop: StopSign) -> Result<Self, Diagnostic> {
+        let program = Arc::new(Program::new(model));
+        let setup = Setup { seed: options.seed, limits: options.limits, output, stop };
+        let machine = Machine::new(&program, setup).map_err(Trap::into_diagnostic)?;
+        Ok(Self { program, machine, options, n_steps: 0 })
+    }
+
+    /// Starts the model: initializes its variables, runs `init` and applies what that has queued. A model without `init`
+    /// begins with its axiom alone.
+    ///
+    /// # Errors
+    /// What went wrong at run time, with place and trace.
+    pub fn init(&mut self) -> Result<(), Diagnostic> {
+        self.n_steps = 0;
+        self.machine.step = 0;
+        self.run_deep("in `init`".to_owned(), |program, machine| {
+            machine.clear(program)?;
+            program.initialize(machine)?;
+            program.run_init(machine, Span::default())
+        })
+    }
+
+    /// Grows by one step: one call of the entry method, then everything queued is applied.
+    ///
+    /// # Errors
+    /// What went wrong at run time, or that there is no such method.
+    pub fn step(&mut self) -> Result<(), Diagnostic> {
+        let entry = self.entry()?;
+        let number = self.n_steps + 1;
+        self.machine.step = number;
+        self.run_deep(format!("in step {number}"), |program, machine| {
+            program.run_entry(entry, machine, Span::default())
+        })?;
+        self.n_steps = number;
+        Ok(())
+    }
+
+    /// Grows by `n` steps.
+    ///
+    /// # Errors
+    /// As [`Growth::step`]; the steps before stay done.
+    pub fn run(&mut self, n: u64) -> Result<(), Diagnostic> {
+        (0..n).try_for_each(|_| self.step())
+    }
+
+    /// Steps done since `init`.
+    pub fn steps(&self) -> u64 {
+        self.n_steps
+    }
+
+    /// Whether the model has an `init`.
+    pub fn has_init(&self) -> bool {
+        self.program.has_init()
+    }
+
+    /// Names of the methods that can be a step.
+    pub fn entries(&self) -> impl Iterator<Item = &str> {
+        self.program.entries().iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The grown graph.
+    pub fn graph(&self) -> &Graph<Value> {
+        &self.machine.graph
+    }
+
+    /// The graph, to be drawn from: instantiation bodies make floating nodes in it for a while.
+    pub fn graph_mut(&mut self) -> &mut Graph<Value> {
+        &mut self.machine.graph
+    }
+
+    /// Number of nodes of each type that has any, turtle commands included, root left out.
+    pub fn counts(&self) -> Vec<(String, usize)> {
+        self.graph().counts()
+    }
+
+    /// Number of nodes, root left out.
+    pub fn total(&self) -> usize {
+        self.counts().iter().map(|(_, n)| n).sum()
+    }
+
+    /// The graph one node per line.
+    pub fn tree_text(&self) -> String {
+        self.graph().tree_text()
+    }
+
+    /// The graph as a bracketed string.
+    pub fn string_text(&self) -> String {
+        self.graph().string_text()
+    }
+
+    /// A number that equal graphs share.
+    pub fn hash(&self) -> u64 {
+        self.graph().digest()
+    }
+
+    /// Whether nodes of a type have an instantiation body, and whether equal fields then give equal geometry.
+    pub fn instantiation(&self, ty: TypeId) -> Option<Purity> {
+        self.program.instantiation(ty)
+    }
+
+    /// Makes the floating nodes that the instantiation body of `node` draws (none, if it has none); give them back to
+    /// [`Growth::free`]. Nodes among them may have bodies of their own.
+    ///
+    /// # Errors
+    /// What went wrong in the body.
+    pub fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Diagnostic> {
+        self.machine.begin(SHALLOW);
+        self.program.instantiate(node, &mut self.machine).map_err(Trap::into_diagnostic)
+    }
+
+    /// Frees what [`Growth::instantiate`] made.
+    pub fn free(&mut self, mut made: Instantiated) {
+        self.machine.queue.free_instantiated(&mut self.machine.graph, &mut made);
+    }
+
+    fn entry(&self) -> Result<MethodId, Diagnostic> {
+        let entries = self.program.entries();
+        let wanted = self.options.entry.as_str();
+        if let Some((_, method)) = entries.iter().find(|(name, _)| name == wanted) {
+            return Ok(*method);
+        }
+        let mut fault = Diagnostic::error("unknown-entry", Span::default(), format!("the model has no public method `{wanted}()` to step"));
+        fault.primary = None;
+        let names: Vec<&str> = self.entries().collect();
+        if let Some(near) = nearest(wanted, names.iter().copied()) {
+            fault = fault.hint(format!("did you mean `--entry {near}`?"));
+        }
+        Err(match names.as_slice() {
+            [] => fault.hint("write `public void run() [ … ]` with the rules of one step"),
+            names => fault.hint(format!("`--entry` can be: {}", names.join(", "))),
+        })
+    }
+
+    fn run_deep(
+        &mut self,
+        what: String,
+        f: impl FnOnce(&Program, &mut Machine) -> Result<(), Trap> + Send,
+    ) -> Result<(), Diagnostic> {
+        let (program, machine) = (&*self.program, &mut self.machine);
+        let result = with_deep_stack(|bytes| {
+            let mark = machine.stack.mark();
+            machine.begin(bytes);
+            let result = f(program, machine);
+            machine.stack.release(mark);
+            if result.is_err() {
+                machine.queue.clear(&mut machine.graph);
+            }
+            result
+        });
+        result.map_err(|trap| trap.into_diagnostic().during(what))
+    }
+}
