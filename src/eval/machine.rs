@@ -73,6 +73,8 @@ pub struct Machine {
     pub derivation_mode: i32,
     /// Number of the step that runs, from 1; 0 is `init`.
     pub step: u64,
+    /// A step that could not be applied. The model goes on without it and fails when the entry method ends.
+    failed_step: Option<Trap>,
     limits: Limits,
     output: Output,
     stop: StopSign,
@@ -134,6 +136,7 @@ impl Machine {
             meter: Meter::new(setup.limits.memory),
             derivation_mode: DEFAULT_MODE,
             step: 0,
+            failed_step: None,
             limits: setup.limits,
             output: setup.output,
             stop: setup.stop,
@@ -161,6 +164,7 @@ impl Machine {
     /// Begins a step: the count of turns starts again, and the stack of the thread that calls may grow by `stack_bytes`.
     pub fn begin(&mut self, stack_bytes: usize) {
         self.n_ticks = 0;
+        self.failed_step = None;
         self.check_at = CHECK_EVERY;
         self.stack_floor = stack_address().saturating_sub(stack_bytes);
     }
@@ -222,11 +226,22 @@ impl Machine {
     pub fn derive(&mut self, span: Span) -> Result<(), Trap> {
         match self.queue.apply(&mut self.graph) {
             Ok(()) => Ok(()),
+            Err(RewriteError::Graph(error @ GraphError::SelfEdge)) => {
+                // As in GroIMP the whole step is dropped, but the method that called goes on.
+                let note = "the whole step that was applied here is dropped";
+                self.failed_step.get_or_insert_with(|| Trap::from(error).at(span).noting(span, || note.to_owned()));
+                Ok(())
+            }
             Err(RewriteError::Graph(error)) => Err(Trap::from(error).at(span)),
             Err(RewriteError::DivisionByZero) => {
                 Err(Trap::exception(ClassId::ArithmeticException, "/ by zero", span))
             }
         }
+    }
+
+    /// The failure of a step that was dropped since the last call.
+    pub fn take_failure(&mut self) -> Result<(), Trap> {
+        self.failed_step.take().map_or(Ok(()), Err)
     }
 
     /// How rules are applied.

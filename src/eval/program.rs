@@ -97,6 +97,11 @@ impl Program {
         Statics { words: vec![0; n_words as usize], values: vec![Value::Null; n_values as usize] }
     }
 
+    /// Where a module is declared; `None` for built-in types.
+    pub fn declared_at(&self, ty: TypeId) -> Option<Span> {
+        self.modules.get(usize::from(ty.0))?.as_ref().map(|module| module.span)
+    }
+
     /// Whether a type has an instantiation body, and whether that depends on nothing but the node's fields.
     pub fn instantiation(&self, ty: TypeId) -> Option<Purity> {
         let module = self.instantiating(ty)?;
@@ -128,7 +133,8 @@ impl Program {
     pub fn run_entry(&self, method: MethodId, machine: &mut Machine, span: Span) -> Result<(), Trap> {
         let mark = machine.stack.mark();
         self.run_method(method, machine, mark, span)?;
-        machine.derive(span)
+        machine.derive(span)?;
+        machine.take_failure()
     }
 
     /// Runs a method whose arguments were pushed since `mark`; its result is left in the stack.

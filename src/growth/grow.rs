@@ -141,6 +141,11 @@ impl Growth {
         self.program.instantiation(ty)
     }
 
+    /// Where a module is declared; `None` for built-in types.
+    pub fn declared_at(&self, ty: TypeId) -> Option<Span> {
+        self.program.declared_at(ty)
+    }
+
     /// Makes the floating nodes that the instantiation body of `node` draws (none, if it has none); give them back to
     /// [`Growth::free`]. Nodes among them may have bodies of their own.
     ///

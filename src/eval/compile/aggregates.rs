@@ -48,7 +48,7 @@ impl Scope<'_> {
         }
     }
 
-    /// `selectWhereMin` and `selectWhereMax`: the first element whose key is extreme.
+    /// `selectWhereMin` and `selectWhereMax`: of several elements whose key is extreme the last.
     pub(super) fn select_where(&self, is_min: bool, sequence: &Sequence, slot: Slot, key: &Expr, ty: &Type) -> Code {
         let elements = self.sequence(sequence, Some(self.local(slot)));
         let key = f64::from_code(convert::number(self.expr(key), &Type::Double));
@@ -59,7 +59,7 @@ impl Scope<'_> {
                 elements(p, m, &mut |p, m| {
                     let value = T::load(&m.stack, at);
                     let key = key.get(p, m)?;
-                    let is_better = |old: f64| if is_min { key < old } else { key > old };
+                    let is_better = |old: f64| if is_min { key <= old } else { key >= old };
                     if best.as_ref().is_none_or(|(old, _)| is_better(*old)) {
                         best = Some((key, value));
                     }

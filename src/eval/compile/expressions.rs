@@ -33,7 +33,7 @@ impl Scope<'_> {
             ExprKind::OrElse(left, right) => self.or_else(left, right),
             ExprKind::Concat(parts) => self.concat(parts, e.span),
             ExprKind::Conditional(condition, yes, no) => self.conditional(condition, [yes, no], &e.ty),
-            ExprKind::Assign(place, value) => self.assign(place, value, &e.ty, e.span),
+            ExprKind::Assign(place, value) => self.assign(place, value, e.span),
             ExprKind::Compound { place, op: Some(op), operands, value } => {
                 self.compound(place, *op, operands, value, e)
             }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Scope;
-use super::convert::number;
+use super::convert::{is_primitive, number};
 use super::operators::combine;
 use crate::check::model::{Expr, Operator, Place, StaticId, Type};
 use crate::diag::Span;
@@ -15,7 +15,7 @@ use crate::eval::program::Program;
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
-use crate::graph::{FieldId, NodeId};
+use crate::graph::{FieldId, NodeId, TypeId};
 use crate::library::ClassId;
 
 /// A field of a node, with its name for messages.
@@ -97,8 +97,22 @@ impl Scope<'_> {
     }
 
     /// `place = value`; the value of the expression is the value stored.
-    pub(super) fn assign(&self, place: &Place, value: &Expr, ty: &Type, span: Span) -> Code {
-        with_kind!(ty, self.assign_kind(place, value, span))
+    pub(super) fn assign(&self, place: &Place, value: &Expr, span: Span) -> Code {
+        with_kind!(&self.stored_type(place, &value.ty), self.assign_kind(place, value, span))
+    }
+
+    /// The type in which a value is stored: its own, but an untyped null becomes what the place holds.
+    fn stored_type(&self, place: &Place, value: &Type) -> Type {
+        let local = match place {
+            Place::Local(slot) => self.local(*slot),
+            Place::Static(StaticId(id)) => self.static_local(*id),
+            Place::Field(..) | Place::Element(..) | Place::Member(..) => return value.clone(),
+        };
+        match local {
+            Local::Word(_) if is_primitive(value) => value.clone(),
+            Local::Word(_) => Type::Node(TypeId(0)),
+            Local::Value(_) => Type::Object,
+        }
     }
 
     fn assign_kind<T: Access>(&self, place: &Place, value: &Expr, span: Span) -> Code {

@@ -1,6 +1,7 @@
 //! Behaviour of every function.
 
 use super::Behaviour::{self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2, Native};
+use super::exponential::exp;
 use super::{format, numbers, places, random, strings, system};
 use crate::library::FunctionId as F;
 use crate::math::functions as math;
@@ -59,7 +60,7 @@ pub fn function(id: F) -> Behaviour {
         F::Sqrt => Double1(f64::sqrt),
         F::Cbrt => Double1(math::cbrt),
         F::Pow => Double2(numbers::pow),
-        F::Exp => Double1(math::exp),
+        F::Exp => Double1(exp),
         F::Expm1 => Double1(libm::expm1),
         F::Log => Double1(math::ln),
         F::Log10 => Double1(math::log10),

@@ -6,6 +6,7 @@
 
 mod collections;
 mod constructors;
+mod exponential;
 mod format;
 mod functions;
 mod light;
