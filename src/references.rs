@@ -13,6 +13,10 @@
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
 //! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
 //!
+//! # Dekker1971
+//! T. J. Dekker: A Floating-Point Technique for Extending the Available Precision. Numerische Mathematik 18, 1971.
+//! <https://doi.org/10.1007/BF01397083>
+//!
 //! # Duff2017
 //! T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani, R. Villemin: Building an Orthonormal Basis, Revisited.
 //! Journal of Computer Graphics Techniques 6(1), 2017. <https://jcgt.org/published/0006/01/01/>
@@ -81,6 +85,10 @@
 //!
 //! # Stafford2011
 //! D. Stafford: Better Bit Mixing, 2011. <https://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html>
+//!
+//! # SteeleWhite1990
+//! G. L. Steele, J. L. White: How to Print Floating-Point Numbers Accurately. Proceedings of PLDI, 1990.
+//! <https://doi.org/10.1145/93542.93559>
 //!
 //! # VeachGuibas1995
 //! E. Veach, L. Guibas: Optimally Combining Sampling Techniques for Monte Carlo Rendering. SIGGRAPH, 1995.

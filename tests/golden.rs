@@ -10,14 +10,31 @@ use understory::syntax::parse;
 
 /// Models that cannot pass, each with the reason.
 const NOT_PASSING: &[(&str, &str)] = &[
-    ("84-acc-closure", "functions as values (tier 3) are refused by name"),
-    ("50-light-directional", "light models are not computed during growth"),
-    ("52-light-area", "light models are not computed during growth"),
-    ("54-light-position", "light models are not computed during growth"),
+    (
+        "84-acc-closure",
+        "functions as values (tier 3) are refused by name",
+    ),
+    (
+        "50-light-directional",
+        "light models are not computed during growth",
+    ),
+    (
+        "52-light-area",
+        "light models are not computed during growth",
+    ),
+    (
+        "54-light-position",
+        "light models are not computed during growth",
+    ),
 ];
 
 /// Models that GroIMP refuses and that may run here: generics, enums and string switches harm no model.
-const LENIENT: &[&str] = &["79-acc-list", "81-acc-diamond", "82-acc-string-switch", "98-acc-enum"];
+const LENIENT: &[&str] = &[
+    "79-acc-list",
+    "81-acc-diamond",
+    "82-acc-string-switch",
+    "98-acc-enum",
+];
 
 fn golden_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
@@ -35,20 +52,38 @@ fn run(text: &str) -> Run {
     let mut sources = SourceMap::default();
     let file = sources.add("model.rgg", text);
     let (ast, mut diagnostics) = parse(file, text);
-    let (model, checked) = check(&[SourceModel { name: "model.rgg".into(), ast }]);
+    let (model, checked) = check(&[SourceModel {
+        name: "model.rgg".into(),
+        ast,
+    }]);
     diagnostics.append(checked);
-    let errors: Vec<Diagnostic> =
-        diagnostics.sorted().into_iter().filter(|d| d.severity == Severity::Error).cloned().collect();
+    let errors: Vec<Diagnostic> = diagnostics
+        .sorted()
+        .into_iter()
+        .filter(|d| d.severity == Severity::Error)
+        .cloned()
+        .collect();
     if !errors.is_empty() {
-        return Run { printed: String::new(), errors, thrown: None, sources };
+        return Run {
+            printed: String::new(),
+            errors,
+            thrown: None,
+            sources,
+        };
     }
     let printed = Arc::new(Mutex::new(String::new()));
     let sink = Arc::clone(&printed);
     let output = Box::new(move |text: &str| sink.lock().unwrap().push_str(text));
-    let mut growth = Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false)).unwrap();
-    let thrown = growth.init().err();
+    let mut growth =
+        Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false)).unwrap();
+    let thrown = growth.init().err().map(|fault| *fault);
     let printed = printed.lock().unwrap().clone();
-    Run { printed, errors, thrown, sources }
+    Run {
+        printed,
+        errors,
+        thrown,
+        sources,
+    }
 }
 
 /// `None` if the model did as GroIMP did, else what is different.
@@ -61,7 +96,8 @@ fn difference(name: &str, text: &str, expected: &str) -> Option<String> {
             .iter()
             .filter_map(|d| Some(run.sources.line_column(d.primary.as_ref()?.span).0))
             .collect();
-        return (!lines.contains(&wanted)).then(|| format!("should be refused at line {wanted}, errors at {lines:?}"));
+        return (!lines.contains(&wanted))
+            .then(|| format!("should be refused at line {wanted}, errors at {lines:?}"));
     }
     if !run.errors.is_empty() && expected.starts_with("REFUSED") {
         return None;
@@ -93,8 +129,10 @@ fn difference(name: &str, text: &str, expected: &str) -> Option<String> {
         (None, None) => None,
         (Some(wanted), Some(found)) => {
             // The wording of what was null is ours.
-            let is_null = wanted.starts_with("java.lang.NullPointerException: Cannot read field \"v\" because");
-            let is_same = found.message == wanted || is_null && found.message.starts_with(&wanted[..66]);
+            let is_null = wanted
+                .starts_with("java.lang.NullPointerException: Cannot read field \"v\" because");
+            let is_same =
+                found.message == wanted || is_null && found.message.starts_with(&wanted[..66]);
             (!is_same).then(|| format!("  - {wanted}\n  + {}", found.message))
         }
         (wanted, found) => Some(format!("exception wanted: {wanted:?}, found: {found:?}")),
@@ -102,14 +140,20 @@ fn difference(name: &str, text: &str, expected: &str) -> Option<String> {
 }
 
 fn refused_line(expected: &str) -> usize {
-    let place = expected.lines().find_map(|line| line.strip_prefix("pfs:model.rgg ")).expect("a place");
+    let place = expected
+        .lines()
+        .find_map(|line| line.strip_prefix("pfs:model.rgg "))
+        .expect("a place");
     place.split(':').next().unwrap().parse().unwrap()
 }
 
 #[test]
 fn golden_models_do_as_groimp_did() {
-    let mut folders: Vec<PathBuf> =
-        std::fs::read_dir(golden_folder()).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
+    let mut folders: Vec<PathBuf> = std::fs::read_dir(golden_folder())
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.is_dir())
+        .collect();
     folders.sort();
     assert!(folders.len() >= 60);
     let mut wrong = vec![];
@@ -125,5 +169,10 @@ fn golden_models_do_as_groimp_did() {
             _ => {}
         }
     }
-    assert!(wrong.is_empty(), "{} models differ\n{}", wrong.len(), wrong.join("\n\n"));
+    assert!(
+        wrong.is_empty(),
+        "{} models differ\n{}",
+        wrong.len(),
+        wrong.join("\n\n")
+    );
 }

@@ -16,7 +16,12 @@ pub trait Access: FromCode {
     /// Reads a field of a node.
     fn field(graph: &Graph<Value>, node: NodeId, field: FieldId) -> Result<Self, GraphError>;
     /// Writes a field of a node.
-    fn set_field(self, graph: &mut Graph<Value>, node: NodeId, field: FieldId) -> Result<(), GraphError>;
+    fn set_field(
+        self,
+        graph: &mut Graph<Value>,
+        node: NodeId,
+        field: FieldId,
+    ) -> Result<(), GraphError>;
     /// Reads an element; `None` if the index is out of bounds.
     fn element(array: &Array, index: usize) -> Option<Self>;
     /// Writes an element; `None` if the index is out of bounds.
@@ -32,7 +37,12 @@ macro_rules! field_access {
             graph.$get(node, field)
         }
 
-        fn set_field(self, graph: &mut Graph<Value>, node: NodeId, field: FieldId) -> Result<(), GraphError> {
+        fn set_field(
+            self,
+            graph: &mut Graph<Value>,
+            node: NodeId,
+            field: FieldId,
+        ) -> Result<(), GraphError> {
             graph.$set(node, field, self)
         }
     };
@@ -54,9 +64,10 @@ impl Access for bool {
 
     fn set_element(self, array: &Array, index: usize) -> Option<()> {
         match array.elements() {
-            Elements::Boolean(e) => Some(e.get(index)?.store(i8::from(self), Relaxed)),
-            _ => None,
+            Elements::Boolean(e) => e.get(index)?.store(i8::from(self), Relaxed),
+            _ => return None,
         }
+        Some(())
     }
 }
 
@@ -107,9 +118,10 @@ impl Access for i64 {
 
     fn set_element(self, array: &Array, index: usize) -> Option<()> {
         match array.elements() {
-            Elements::Long(e) => Some(e.get(index)?.store(self, Relaxed)),
-            _ => None,
+            Elements::Long(e) => e.get(index)?.store(self, Relaxed),
+            _ => return None,
         }
+        Some(())
     }
 }
 
@@ -131,9 +143,10 @@ impl Access for f32 {
     #[inline]
     fn set_element(self, array: &Array, index: usize) -> Option<()> {
         match array.elements() {
-            Elements::Float(e) => Some(e.get(index)?.store(self.to_bits(), Relaxed)),
-            _ => None,
+            Elements::Float(e) => e.get(index)?.store(self.to_bits(), Relaxed),
+            _ => return None,
         }
+        Some(())
     }
 }
 
@@ -155,9 +168,10 @@ impl Access for f64 {
     #[inline]
     fn set_element(self, array: &Array, index: usize) -> Option<()> {
         match array.elements() {
-            Elements::Double(e) => Some(e.get(index)?.store(self.to_bits(), Relaxed)),
-            _ => None,
+            Elements::Double(e) => e.get(index)?.store(self.to_bits(), Relaxed),
+            _ => return None,
         }
+        Some(())
     }
 }
 
@@ -192,7 +206,12 @@ impl Access for Option<NodeId> {
         Ok(graph.peek_object(node, field)?.and_then(Value::as_node))
     }
 
-    fn set_field(self, graph: &mut Graph<Value>, node: NodeId, field: FieldId) -> Result<(), GraphError> {
+    fn set_field(
+        self,
+        graph: &mut Graph<Value>,
+        node: NodeId,
+        field: FieldId,
+    ) -> Result<(), GraphError> {
         graph.set_object(node, field, self.map_or(Value::Null, Value::Node))
     }
 
@@ -201,7 +220,8 @@ impl Access for Option<NodeId> {
     }
 
     fn set_element(self, array: &Array, index: usize) -> Option<()> {
-        self.map_or(Value::Null, Value::Node).set_element(array, index)
+        self.map_or(Value::Null, Value::Node)
+            .set_element(array, index)
     }
 }
 

@@ -3,7 +3,9 @@
 //! Elements are relaxed atomics, which cost no more than plain memory: values can be shared between threads that read a
 //! grown model, while the language itself runs on one.
 
-use std::sync::atomic::{AtomicI8, AtomicI16, AtomicI32, AtomicI64, AtomicU16, AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{
+    AtomicI8, AtomicI16, AtomicI32, AtomicI64, AtomicU16, AtomicU32, AtomicU64, Ordering,
+};
 use std::sync::{Mutex, PoisonError};
 
 use super::memory::Charge;
@@ -35,7 +37,10 @@ pub enum Elements {
 impl Array {
     /// An array that carries its share of the memory budget.
     pub fn new(elements: Elements, charge: Charge) -> Self {
-        Self { elements, _charge: charge }
+        Self {
+            elements,
+            _charge: charge,
+        }
     }
 
     /// What it holds.
@@ -71,9 +76,17 @@ impl Array {
             Elements::Char(e) => Value::Char(e.get(index)?.load(Ordering::Relaxed)),
             Elements::Int(e) => Value::Int(e.get(index)?.load(Ordering::Relaxed)),
             Elements::Long(e) => Value::Long(e.get(index)?.load(Ordering::Relaxed)),
-            Elements::Float(e) => Value::Float(f32::from_bits(e.get(index)?.load(Ordering::Relaxed))),
-            Elements::Double(e) => Value::Double(f64::from_bits(e.get(index)?.load(Ordering::Relaxed))),
-            Elements::Reference(e) => e.get(index)?.lock().unwrap_or_else(PoisonError::into_inner).clone(),
+            Elements::Float(e) => {
+                Value::Float(f32::from_bits(e.get(index)?.load(Ordering::Relaxed)))
+            }
+            Elements::Double(e) => {
+                Value::Double(f64::from_bits(e.get(index)?.load(Ordering::Relaxed)))
+            }
+            Elements::Reference(e) => e
+                .get(index)?
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .clone(),
         })
     }
 

@@ -59,7 +59,9 @@ pub enum Source<T> {
 
 impl<T: Kind> Source<T> {
     /// A computed source.
-    pub fn code(f: impl Fn(&Program, &mut Machine) -> Result<T, Trap> + Send + Sync + 'static) -> Self {
+    pub fn code(
+        f: impl Fn(&Program, &mut Machine) -> Result<T, Trap> + Send + Sync + 'static,
+    ) -> Self {
         Self::Code(Box::new(f))
     }
 
@@ -82,12 +84,19 @@ impl<T: Kind> Source<T> {
     }
 
     /// `f` of the value, which may fail.
-    pub fn try_map<R: Kind>(self, f: impl Fn(T) -> Result<R, Trap> + Send + Sync + 'static) -> Source<R> {
+    pub fn try_map<R: Kind>(
+        self,
+        f: impl Fn(T) -> Result<R, Trap> + Send + Sync + 'static,
+    ) -> Source<R> {
         Source::code(move |p, m| f(self.get(p, m)?))
     }
 
     /// `f` of both values, left first; computed now if both are constant.
-    pub fn zip<U: Kind, R: Kind>(self, other: Source<U>, f: impl Fn(T, U) -> R + Send + Sync + 'static) -> Source<R> {
+    pub fn zip<U: Kind, R: Kind>(
+        self,
+        other: Source<U>,
+        f: impl Fn(T, U) -> R + Send + Sync + 'static,
+    ) -> Source<R> {
         match (self, other) {
             (Self::Constant(a), Source::Constant(b)) => Source::Constant(f(a, b)),
             (a, b) => Source::code(move |p, m| {
@@ -130,7 +139,9 @@ pub enum Code {
 
 impl Code {
     /// A computation for its effects only.
-    pub fn void(f: impl Fn(&Program, &mut Machine) -> Result<(), Trap> + Send + Sync + 'static) -> Self {
+    pub fn void(
+        f: impl Fn(&Program, &mut Machine) -> Result<(), Trap> + Send + Sync + 'static,
+    ) -> Self {
         Self::Void(Box::new(f))
     }
 

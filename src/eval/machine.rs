@@ -31,7 +31,12 @@ pub struct Limits {
 impl Default for Limits {
     /// Bounds that no sensible model meets: an endless loop ends after some seconds, not after hours.
     fn default() -> Self {
-        Self { steps: 1 << 30, depth: 3_000, memory: 1 << 31, nodes: 50_000_000 }
+        Self {
+            steps: 1 << 30,
+            depth: 3_000,
+            memory: 1 << 31,
+            nodes: 50_000_000,
+        }
     }
 }
 
@@ -178,7 +183,11 @@ impl Machine {
     #[inline]
     pub fn tick(&mut self, span: Span) -> Result<(), Trap> {
         self.n_ticks += 1;
-        if self.n_ticks < self.check_at { Ok(()) } else { self.check_budget(span) }
+        if self.n_ticks < self.check_at {
+            Ok(())
+        } else {
+            self.check_budget(span)
+        }
     }
 
     #[cold]
@@ -190,7 +199,10 @@ impl Machine {
         if self.n_ticks <= self.limits.steps {
             return Ok(());
         }
-        let message = format!("this loop does not end: {} turns and calls in one step", self.limits.steps);
+        let message = format!(
+            "this loop does not end: {} turns and calls in one step",
+            self.limits.steps
+        );
         let hint = "does its condition ever become false? `step_limit` allows more turns";
         Err(Trap::limit("step-limit", message, hint, Some(span)))
     }
@@ -209,7 +221,11 @@ impl Machine {
     pub fn new_text(&self, text: String) -> Result<Value, Trap> {
         let n_bytes = text.len();
         self.check_text(n_bytes)?;
-        let charge = if n_bytes > FREE_TEXT { self.charge(n_bytes as u64)? } else { Charge::none() };
+        let charge = if n_bytes > FREE_TEXT {
+            self.charge(n_bytes as u64)?
+        } else {
+            Charge::none()
+        };
         Ok(Value::Text(Arc::new(Text::new(text, charge))))
     }
 
@@ -219,7 +235,12 @@ impl Machine {
             return Ok(());
         }
         let message = format!("a text of {n_bytes} bytes is longer than the {MAX_TEXT} allowed");
-        Err(Trap::limit("text-limit", message, "does a loop append to a text without end?", None))
+        Err(Trap::limit(
+            "text-limit",
+            message,
+            "does a loop append to a text without end?",
+            None,
+        ))
     }
 
     /// Applies what the rules have queued, for the call of `derive()` at `span`.
@@ -229,13 +250,17 @@ impl Machine {
             Err(RewriteError::Graph(error @ GraphError::SelfEdge)) => {
                 // As in GroIMP the whole step is dropped, but the method that called goes on.
                 let note = "the whole step that was applied here is dropped";
-                self.failed_step.get_or_insert_with(|| Trap::from(error).at(span).noting(span, || note.to_owned()));
+                self.failed_step.get_or_insert_with(|| {
+                    Trap::from(error).at(span).noting(span, || note.to_owned())
+                });
                 Ok(())
             }
             Err(RewriteError::Graph(error)) => Err(Trap::from(error).at(span)),
-            Err(RewriteError::DivisionByZero) => {
-                Err(Trap::exception(ClassId::ArithmeticException, "/ by zero", span))
-            }
+            Err(RewriteError::DivisionByZero) => Err(Trap::exception(
+                ClassId::ArithmeticException,
+                "/ by zero",
+                span,
+            )),
         }
     }
 
@@ -251,7 +276,10 @@ impl Machine {
             3 => Derivation::SequentialRandom,
             _ => Derivation::Parallel,
         };
-        Mode { derivation, excludes_consumed: self.derivation_mode & EXCLUDE_DELETED != 0 }
+        Mode {
+            derivation,
+            excludes_consumed: self.derivation_mode & EXCLUDE_DELETED != 0,
+        }
     }
 
     /// What a fault of the graph means to the model that used `node` at `span`.
@@ -259,7 +287,10 @@ impl Machine {
     pub fn graph_trap(&self, error: &GraphError, node: NodeId, span: Span) -> Trap {
         match error {
             GraphError::DeletedNode => {
-                let message = format!("{} was removed from the graph in an earlier step", self.node_name(node));
+                let message = format!(
+                    "{} was removed from the graph in an earlier step",
+                    self.node_name(node)
+                );
                 Trap::exception(ClassId::IllegalStateException, message, span)
             }
             other => Trap::from(other.clone()).at(span),
@@ -268,7 +299,9 @@ impl Machine {
 
     /// A share of the memory budget.
     pub fn charge(&self, bytes: u64) -> Result<Charge, Trap> {
-        self.meter.charge(bytes).map_err(|over| Trap::memory(over, None))
+        self.meter
+            .charge(bytes)
+            .map_err(|over| Trap::memory(over, None))
     }
 
     /// Appends the text of any value, nodes by type and number.
@@ -303,5 +336,9 @@ fn stack_address() -> usize {
 
 /// An exception with the text Java gives an index that is out of bounds.
 pub fn out_of_bounds(class: ClassId, index: i64, length: usize, span: Span) -> Trap {
-    Trap::exception(class, format!("Index {index} out of bounds for length {length}"), span)
+    Trap::exception(
+        class,
+        format!("Index {index} out of bounds for length {length}"),
+        span,
+    )
 }

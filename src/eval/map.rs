@@ -42,9 +42,14 @@ impl JavaMap {
     /// Sets the value of `key` and gives the one before.
     pub fn insert(&mut self, key: Value, value: Value) -> Option<Value> {
         if let Some(place) = self.place(&key) {
-            return self.entries[place].as_mut().map(|(_, old)| std::mem::replace(old, value));
+            return self.entries[place]
+                .as_mut()
+                .map(|(_, old)| std::mem::replace(old, value));
         }
-        self.places.entry(key.hash_code()).or_default().push(self.entries.len());
+        self.places
+            .entry(key.hash_code())
+            .or_default()
+            .push(self.entries.len());
         self.entries.push(Some((key, value)));
         self.n_entries += 1;
         None
@@ -66,7 +71,11 @@ impl JavaMap {
 
     fn place(&self, key: &Value) -> Option<usize> {
         let places = self.places.get(&key.hash_code())?;
-        let has_key = |&&place: &&usize| self.entries[place].as_ref().is_some_and(|(k, _)| k.equals(key));
+        let has_key = |&&place: &&usize| {
+            self.entries[place]
+                .as_ref()
+                .is_some_and(|(k, _)| k.equals(key))
+        };
         places.iter().find(has_key).copied()
     }
 
@@ -90,13 +99,23 @@ mod tests {
             assert!(map.insert(Value::Int(i), Value::Int(i * i)).is_none());
         }
         for i in 0..95 {
-            assert_eq!(map.remove(&Value::Int(i)).and_then(|v| v.as_int()), Some(i * i));
+            assert_eq!(
+                map.remove(&Value::Int(i)).and_then(|v| v.as_int()),
+                Some(i * i)
+            );
         }
         let keys: Vec<_> = map.entries().filter_map(|(k, _)| k.as_int()).collect();
         assert_eq!(keys, [95, 96, 97, 98, 99]);
-        assert_eq!(map.get(&Value::Int(97)).and_then(Value::as_int), Some(97 * 97));
+        assert_eq!(
+            map.get(&Value::Int(97)).and_then(Value::as_int),
+            Some(97 * 97)
+        );
         assert!(map.get(&Value::Long(97)).is_none());
-        assert_eq!(map.insert(Value::Int(97), Value::Null).and_then(|v| v.as_int()), Some(97 * 97));
+        assert_eq!(
+            map.insert(Value::Int(97), Value::Null)
+                .and_then(|v| v.as_int()),
+            Some(97 * 97)
+        );
         assert_eq!((map.len(), map.is_empty()), (5, false));
     }
 }

@@ -22,7 +22,10 @@ pub struct OverBudget {
 impl Meter {
     /// A meter that allows `limit` bytes.
     pub fn new(limit: u64) -> Arc<Self> {
-        Arc::new(Self { used: AtomicU64::new(0), limit })
+        Arc::new(Self {
+            used: AtomicU64::new(0),
+            limit,
+        })
     }
 
     /// Bytes in use.
@@ -35,7 +38,10 @@ impl Meter {
         let before = self.used.fetch_add(bytes, Ordering::Relaxed);
         if before.saturating_add(bytes) > self.limit {
             self.used.fetch_sub(bytes, Ordering::Relaxed);
-            return Err(OverBudget { wanted: bytes, limit: self.limit });
+            return Err(OverBudget {
+                wanted: bytes,
+                limit: self.limit,
+            });
         }
         Ok(Charge(Some((Arc::clone(self), bytes))))
     }
@@ -80,7 +86,13 @@ mod tests {
     fn a_dropped_charge_gives_its_bytes_back() {
         let meter = Meter::new(100);
         let first = meter.charge(60).unwrap();
-        assert_eq!(meter.charge(50).unwrap_err(), OverBudget { wanted: 50, limit: 100 });
+        assert_eq!(
+            meter.charge(50).unwrap_err(),
+            OverBudget {
+                wanted: 50,
+                limit: 100
+            }
+        );
         drop(first);
         let second = meter.charge(100).unwrap();
         assert_eq!((meter.used(), second.bytes()), (100, 100));

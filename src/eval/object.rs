@@ -105,7 +105,13 @@ impl Light {
     pub fn new(power: f32) -> Self {
         let degrees = |d: f32| d / 180.0 * std::f32::consts::PI;
         let (inner_angle, outer_angle) = (degrees(22.5), degrees(30.0));
-        Self { color: [1.0; 3], power, inner_angle, outer_angle, exponent: 1.0 }
+        Self {
+            color: [1.0; 3],
+            power,
+            inner_angle,
+            outer_angle,
+            exponent: 1.0,
+        }
     }
 }
 
@@ -123,7 +129,10 @@ pub struct LightModel {
 impl Object {
     /// A new object.
     pub fn new(class: ClassId, data: Data) -> Self {
-        Self { class, data: Mutex::new(data) }
+        Self {
+            class,
+            data: Mutex::new(data),
+        }
     }
 
     /// Access to what it holds. Never hold it while anything else is evaluated: the same object may be asked again.
@@ -147,7 +156,8 @@ impl Object {
             (Data::Color(a), Data::Color(b)) => a == b,
             (Data::Shader(a), Data::Shader(b)) => a == b,
             (Data::List(a), Data::List(b)) => {
-                a.values.len() == b.values.len() && a.values.iter().zip(&b.values).all(|(a, b)| a.equals(b))
+                a.values.len() == b.values.len()
+                    && a.values.iter().zip(&b.values).all(|(a, b)| a.equals(b))
             }
             _ => false,
         }
@@ -158,7 +168,8 @@ impl Object {
         match &*self.lock() {
             Data::Tuple(v) => v.to_array().iter().fold(1, |hash, x| {
                 let bits = if *x == 0.0 { 0 } else { x.to_bits() };
-                hash.wrapping_mul(31).wrapping_add((bits ^ (bits >> 32)) as i32)
+                hash.wrapping_mul(31)
+                    .wrapping_add((bits ^ (bits >> 32)) as i32)
             }),
             Data::List(list) => list.values.len() as i32,
             _ => 1,
@@ -175,7 +186,11 @@ impl Object {
             Data::Shader(c) => push_all(out, ["(", ")"], c.map(java_float_to_string)),
             Data::List(list) => push_all(out, ["[", "]"], list.values.iter().map(Value::to_string)),
             Data::Map(map) => {
-                push_all(out, ["{", "}"], map.entries().map(|(key, value)| format!("{key}={value}")));
+                push_all(
+                    out,
+                    ["{", "}"],
+                    map.entries().map(|(key, value)| format!("{key}={value}")),
+                );
             }
             Data::Buffer(text, _) => out.push_str(&text),
             Data::Throwable(message) => {
@@ -185,7 +200,9 @@ impl Object {
                     out.push_str(message.as_str());
                 }
             }
-            Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => out.push_str(name),
+            Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
+                out.push_str(name);
+            }
         }
     }
 }
@@ -203,7 +220,11 @@ fn push_all(out: &mut String, [open, close]: [&str; 2], parts: impl IntoIterator
 
 /// Java's full name of a class that can be thrown.
 pub fn qualified(class: ClassId) -> String {
-    let package = if class == ClassId::IOException { "java.io" } else { "java.lang" };
+    let package = if class == ClassId::IOException {
+        "java.io"
+    } else {
+        "java.lang"
+    };
     format!("{package}.{}", class.name())
 }
 
@@ -214,8 +235,14 @@ mod tests {
     #[test]
     fn objects_print_as_in_java() {
         let text = |class, data| Value::Object(Arc::new(Object::new(class, data))).to_string();
-        assert_eq!(text(ClassId::Vector3d, Data::Tuple(DVec3::new(1.0, 0.0, -2.5))), "(1.0, 0.0, -2.5)");
-        let list = List { values: vec![Value::Int(3), Value::text("x")], charge: Charge::none() };
+        assert_eq!(
+            text(ClassId::Vector3d, Data::Tuple(DVec3::new(1.0, 0.0, -2.5))),
+            "(1.0, 0.0, -2.5)"
+        );
+        let list = List {
+            values: vec![Value::Int(3), Value::text("x")],
+            charge: Charge::none(),
+        };
         assert_eq!(text(ClassId::ArrayList, Data::List(list)), "[3, x]");
         let message = Some(Arc::new(Text::new("/ by zero", Charge::none())));
         let thrown = text(ClassId::ArithmeticException, Data::Throwable(message));
@@ -224,7 +251,12 @@ mod tests {
 
     #[test]
     fn tuples_are_equal_by_value() {
-        let point = |x| Arc::new(Object::new(ClassId::Point3d, Data::Tuple(DVec3::new(x, 0.0, 0.0))));
+        let point = |x| {
+            Arc::new(Object::new(
+                ClassId::Point3d,
+                Data::Tuple(DVec3::new(x, 0.0, 0.0)),
+            ))
+        };
         assert!(Object::equals(&point(1.0), &point(1.0)));
         assert!(!Object::equals(&point(1.0), &point(2.0)));
         assert_eq!(point(0.0).hash_code(), point(-0.0).hash_code());

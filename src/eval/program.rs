@@ -60,20 +60,41 @@ impl Program {
     /// Compiles a checked model.
     pub fn new(model: &Model) -> Self {
         let types: Vec<Type> = model.statics.iter().map(|s| s.ty.clone()).collect();
-        let outline = Outline { statics: Layout::new(&types) };
-        let compiler = Compiler { model, outline: &outline };
+        let outline = Outline {
+            statics: Layout::new(&types),
+        };
+        let compiler = Compiler {
+            model,
+            outline: &outline,
+        };
         let mut modules: Vec<Option<Module>> = model.types.iter().map(|_| None).collect();
         for module in &model.modules {
             modules[usize::from(module.type_id.0)] = Some(compiler.module(module));
         }
-        let methods = model.methods.iter().map(|method| compiler.method(method)).collect();
+        let methods = model
+            .methods
+            .iter()
+            .map(|method| compiler.method(method))
+            .collect();
         let statics = model.statics.iter().enumerate().filter_map(|(i, s)| {
             let init = s.init.as_ref()?;
             Some(compiler.initializer(outline.statics.local_at(i), &s.ty, init, &s.frame))
         });
         let statics = statics.collect();
-        let (types, init, entries) = (Arc::new(model.types.clone()), model.init, model.entries.clone());
-        Self { types, methods, modules, statics, init, entries, outline }
+        let (types, init, entries) = (
+            Arc::new(model.types.clone()),
+            model.init,
+            model.entries.clone(),
+        );
+        Self {
+            types,
+            methods,
+            modules,
+            statics,
+            init,
+            entries,
+            outline,
+        }
     }
 
     /// The node types of the model.
@@ -94,18 +115,28 @@ impl Program {
     /// Variables of the model before their initializers have run.
     pub fn new_statics(&self) -> Statics {
         let (n_words, n_values) = self.outline.statics.size();
-        Statics { words: vec![0; n_words as usize], values: vec![Value::Null; n_values as usize] }
+        Statics {
+            words: vec![0; n_words as usize],
+            values: vec![Value::Null; n_values as usize],
+        }
     }
 
     /// Where a module is declared; `None` for built-in types.
     pub fn declared_at(&self, ty: TypeId) -> Option<Span> {
-        self.modules.get(usize::from(ty.0))?.as_ref().map(|module| module.span)
+        self.modules
+            .get(usize::from(ty.0))?
+            .as_ref()
+            .map(|module| module.span)
     }
 
     /// Whether a type has an instantiation body, and whether that depends on nothing but the node's fields.
     pub fn instantiation(&self, ty: TypeId) -> Option<Purity> {
         let module = self.instantiating(ty)?;
-        Some(if module.is_pure { Purity::Pure } else { Purity::Impure })
+        Some(if module.is_pure {
+            Purity::Pure
+        } else {
+            Purity::Impure
+        })
     }
 
     /// The nearest type that has an instantiation body.
@@ -118,7 +149,9 @@ impl Program {
     /// Runs the initializers of the variables of the model.
     pub fn initialize(&self, machine: &mut Machine) -> Result<(), Trap> {
         machine.statics = self.new_statics();
-        self.statics.iter().try_for_each(|body| self.run(body, machine, machine.stack.mark()).map(drop))
+        self.statics
+            .iter()
+            .try_for_each(|body| self.run(body, machine, machine.stack.mark()).map(drop))
     }
 
     /// Runs `init`, if there is one, and applies what it has queued.
@@ -130,7 +163,12 @@ impl Program {
     }
 
     /// Runs a method without parameters and applies what it has queued.
-    pub fn run_entry(&self, method: MethodId, machine: &mut Machine, span: Span) -> Result<(), Trap> {
+    pub fn run_entry(
+        &self,
+        method: MethodId,
+        machine: &mut Machine,
+        span: Span,
+    ) -> Result<(), Trap> {
         let mark = machine.stack.mark();
         self.run_method(method, machine, mark, span)?;
         machine.derive(span)?;
@@ -138,12 +176,22 @@ impl Program {
     }
 
     /// Runs a method whose arguments were pushed since `mark`; its result is left in the stack.
-    pub(super) fn run_method(&self, id: MethodId, m: &mut Machine, mark: Mark, span: Span) -> Result<(), Trap> {
+    pub(super) fn run_method(
+        &self,
+        id: MethodId,
+        m: &mut Machine,
+        mark: Mark,
+        span: Span,
+    ) -> Result<(), Trap> {
         let method = &self.methods[id.0 as usize];
         let Some(body) = &method.body else {
             m.stack.release(mark);
             let message = format!("the method `{}` is abstract", method.name);
-            return Err(Trap::exception(crate::library::ClassId::UnsupportedOperationException, message, span));
+            return Err(Trap::exception(
+                crate::library::ClassId::UnsupportedOperationException,
+                message,
+                span,
+            ));
         };
         m.enter_call(&method.name, span)?;
         m.stack.enter(mark, &method.layout);
@@ -162,7 +210,13 @@ impl Program {
     }
 
     /// Runs the constructor of a module; the node and its arguments were pushed since `mark`.
-    pub(super) fn run_constructor(&self, ty: TypeId, m: &mut Machine, mark: Mark, span: Span) -> Result<(), Trap> {
+    pub(super) fn run_constructor(
+        &self,
+        ty: TypeId,
+        m: &mut Machine,
+        mark: Mark,
+        span: Span,
+    ) -> Result<(), Trap> {
         let Some(Some(module)) = self.modules.get(usize::from(ty.0)) else {
             m.stack.release(mark);
             return Ok(());
@@ -176,8 +230,12 @@ impl Program {
     /// Makes what the instantiation body of a node draws.
     pub fn instantiate(&self, node: NodeId, m: &mut Machine) -> Result<Instantiated, Trap> {
         let ty = m.graph.type_of(node)?;
-        let Some(module) = self.instantiating(ty) else { return Ok(Instantiated::default()) };
-        let Some(body) = &module.instantiation else { return Ok(Instantiated::default()) };
+        let Some(module) = self.instantiating(ty) else {
+            return Ok(Instantiated::default());
+        };
+        let Some(body) = &module.instantiation else {
+            return Ok(Instantiated::default());
+        };
         let mark = m.stack.mark();
         m.enter_call(&self.types[ty].name, module.span)?;
         Some(node).push(&mut m.stack);
@@ -187,7 +245,9 @@ impl Program {
         if let Err(trap) = result {
             m.queue.free_instantiated(&mut m.graph, &mut made);
             let name = m.node_name(node);
-            return Err(trap.at(module.span).during(|| format!("while {name} was drawn")));
+            return Err(trap
+                .at(module.span)
+                .during(|| format!("while {name} was drawn")));
         }
         Ok(made)
     }
@@ -219,20 +279,41 @@ impl Compiler<'_> {
     fn method(&self, method: &crate::check::model::Method) -> Method {
         let scope = Scope::new(self.model, self.outline, &method.frame, &method.result);
         let body = method.body.as_ref().map(|body| scope.body(body));
-        Method { name: method.name.clone(), this: method.this, layout: scope.into_layout(), body }
+        Method {
+            name: method.name.clone(),
+            this: method.this,
+            layout: scope.into_layout(),
+            body,
+        }
     }
 
     fn module(&self, module: &crate::check::model::Module) -> Module {
-        let scope = Scope::new(self.model, self.outline, &module.constructor.frame, &Type::Void);
+        let scope = Scope::new(
+            self.model,
+            self.outline,
+            &module.constructor.frame,
+            &Type::Void,
+        );
         let code = scope.body(&module.constructor.body);
-        let constructor = Body { layout: scope.into_layout(), code };
+        let constructor = Body {
+            layout: scope.into_layout(),
+            code,
+        };
         let instantiation = module.instantiation.as_ref().map(|instantiation| {
             let scope = Scope::new(self.model, self.outline, &instantiation.frame, &Type::Void);
             let code = scope.instantiation(&instantiation.body);
-            Body { layout: scope.into_layout(), code }
+            Body {
+                layout: scope.into_layout(),
+                code,
+            }
         });
         let is_pure = module.instantiation.as_ref().is_some_and(|i| i.is_pure);
-        Module { constructor, instantiation, is_pure, span: module.span }
+        Module {
+            constructor,
+            instantiation,
+            is_pure,
+            span: module.span,
+        }
     }
 
     fn initializer(&self, to: Local, ty: &Type, value: &Expr, frame: &[Type]) -> Body {
@@ -241,7 +322,10 @@ impl Compiler<'_> {
         frame.push(ty.clone());
         let slot = Slot((frame.len() - 1) as u16);
         let scope = Scope::new(self.model, self.outline, &frame, &Type::Void);
-        let local = Stmt { kind: StmtKind::Local(slot, Some(value.clone())), span: value.span };
+        let local = Stmt {
+            kind: StmtKind::Local(slot, Some(value.clone())),
+            span: value.span,
+        };
         let code = scope.body(std::slice::from_ref(&local));
         let from = Layout::new(&frame).local(slot);
         let code: Exec = Box::new(move |p, m| {
@@ -258,6 +342,9 @@ impl Compiler<'_> {
             }
             Ok(Flow::Next)
         });
-        Body { layout: scope.into_layout(), code }
+        Body {
+            layout: scope.into_layout(),
+            code,
+        }
     }
 }

@@ -16,7 +16,10 @@ pub struct JavaRandom {
 impl JavaRandom {
     /// `new Random(seed)`.
     pub fn new(seed: i64) -> Self {
-        Self { state: (seed as u64 ^ MULTIPLIER) & MASK, spare: None }
+        Self {
+            state: (seed as u64 ^ MULTIPLIER) & MASK,
+            spare: None,
+        }
     }
 
     /// `setSeed(seed)`.
@@ -126,7 +129,15 @@ mod tests {
         assert_eq!(r.next_float(), 0.727_563_7);
         r.set_seed(42);
         let normal: Vec<f64> = (0..4).map(|_| r.next_gaussian()).collect();
-        assert_eq!(normal, [1.141_905_315_473_054_7, 0.919_407_948_982_787_9, -0.949_866_636_890_895_9, -1.106_990_286_399_337_7]);
+        assert_eq!(
+            normal,
+            [
+                1.141_905_315_473_054_7,
+                0.919_407_948_982_787_9,
+                -0.949_866_636_890_895_9,
+                -1.106_990_286_399_337_7
+            ]
+        );
     }
 
     #[test]

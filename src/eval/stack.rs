@@ -26,10 +26,18 @@ impl Layout {
     pub fn new(types: &[Type]) -> Self {
         let mut layout = Self::default();
         for ty in types {
-            let counter = if is_word(ty) { &mut layout.n_words } else { &mut layout.n_values };
+            let counter = if is_word(ty) {
+                &mut layout.n_words
+            } else {
+                &mut layout.n_values
+            };
             let at = *counter;
             *counter += 1;
-            layout.locals.push(if is_word(ty) { Local::Word(at) } else { Local::Value(at) });
+            layout.locals.push(if is_word(ty) {
+                Local::Word(at)
+            } else {
+                Local::Value(at)
+            });
         }
         layout
     }
@@ -41,7 +49,10 @@ impl Layout {
 
     /// Where the variable with this number lives.
     pub fn local_at(&self, index: usize) -> Local {
-        self.locals.get(index).copied().expect("invariant: slots are numbered by the checker")
+        self.locals
+            .get(index)
+            .copied()
+            .expect("invariant: slots are numbered by the checker")
     }
 
     /// Number of words and of values.
@@ -62,7 +73,9 @@ pub fn is_word(ty: &Type) -> bool {
     match ty {
         Type::Boolean | Type::Byte | Type::Short | Type::Char | Type::Int | Type::Long => true,
         Type::Float | Type::Double | Type::Node(_) => true,
-        Type::Void | Type::Null | Type::String | Type::Class(_) | Type::Array(_) | Type::Object => false,
+        Type::Void | Type::Null | Type::String | Type::Class(_) | Type::Array(_) | Type::Object => {
+            false
+        }
     }
 }
 
@@ -107,14 +120,16 @@ impl Stack {
     pub fn release(&mut self, mark: Mark) {
         self.words.truncate(mark.n_words);
         self.values.truncate(mark.n_values);
-        (self.word_base, self.value_base, self.depth) = (mark.word_base, mark.value_base, mark.depth);
+        (self.word_base, self.value_base, self.depth) =
+            (mark.word_base, mark.value_base, mark.depth);
     }
 
     /// Makes a frame current whose first variables (the arguments) were pushed since `mark`; the rest begins as zero.
     pub fn enter(&mut self, mark: Mark, layout: &Layout) {
         (self.word_base, self.value_base) = (mark.n_words, mark.n_values);
         self.words.resize(mark.n_words + layout.n_words as usize, 0);
-        self.values.resize(mark.n_values + layout.n_values as usize, Value::Null);
+        self.values
+            .resize(mark.n_values + layout.n_values as usize, Value::Null);
         self.depth += 1;
     }
 
@@ -278,7 +293,10 @@ mod tests {
         stack.enter(inner, &layout);
         assert_eq!((i32::load(&stack, 0), f64::load(&stack, 1)), (-1, 0.0));
         stack.release(inner);
-        assert_eq!((i32::load(&stack, 0), f64::load(&stack, 1), stack.depth), (7, 2.5, 1));
+        assert_eq!(
+            (i32::load(&stack, 0), f64::load(&stack, 1), stack.depth),
+            (7, 2.5, 1)
+        );
         assert_eq!(Value::load(&stack, 0).to_string(), "a");
         stack.release(outer);
         assert!(stack.words.is_empty() && stack.values.is_empty());

@@ -14,7 +14,11 @@ impl Text {
     /// A text that carries its share of the memory budget.
     pub fn new(text: impl Into<Box<str>>, charge: Charge) -> Self {
         let text = text.into();
-        Self { is_ascii: text.is_ascii(), text, _charge: charge }
+        Self {
+            is_ascii: text.is_ascii(),
+            text,
+            _charge: charge,
+        }
     }
 
     /// The text itself.
@@ -24,7 +28,11 @@ impl Text {
 
     /// Number of UTF-16 units.
     pub fn len(&self) -> usize {
-        if self.is_ascii { self.text.len() } else { self.text.encode_utf16().count() }
+        if self.is_ascii {
+            self.text.len()
+        } else {
+            self.text.encode_utf16().count()
+        }
     }
 
     /// Whether there is nothing in it.
@@ -49,7 +57,12 @@ impl Text {
         if self.is_ascii {
             return self.text.get(from..to).map(str::to_owned);
         }
-        let units: Vec<u16> = self.text.encode_utf16().skip(from).take(to - from).collect();
+        let units: Vec<u16> = self
+            .text
+            .encode_utf16()
+            .skip(from)
+            .take(to - from)
+            .collect();
         Some(String::from_utf16_lossy(&units))
     }
 
@@ -79,7 +92,11 @@ impl Text {
     }
 
     fn unit_of(&self, byte: usize) -> usize {
-        if self.is_ascii { byte } else { self.text[..byte].encode_utf16().count() }
+        if self.is_ascii {
+            byte
+        } else {
+            self.text[..byte].encode_utf16().count()
+        }
     }
 }
 

@@ -49,31 +49,58 @@ pub enum Cause {
 impl Trap {
     /// Some end of an evaluation at `span`.
     pub fn new(cause: Cause, span: Option<Span>) -> Self {
-        Self(Box::new(Fault { cause, span, notes: vec![], trace: vec![], n_omitted: 0 }))
+        Self(Box::new(Fault {
+            cause,
+            span,
+            notes: vec![],
+            trace: vec![],
+            n_omitted: 0,
+        }))
     }
 
     /// An exception of the language.
     pub fn exception(class: ClassId, message: impl Into<Box<str>>, span: Span) -> Self {
         let text = Arc::new(Text::new(message, super::memory::Charge::none()));
         let object = Object::new(class, Data::Throwable(Some(text)));
-        Self::new(Cause::Exception(Value::Object(Arc::new(object))), Some(span))
+        Self::new(
+            Cause::Exception(Value::Object(Arc::new(object))),
+            Some(span),
+        )
     }
 
     /// `NullPointerException`: `what` was done to null.
     pub fn null(what: &str, span: Span) -> Self {
-        Self::exception(ClassId::NullPointerException, format!("cannot {what} because it is null"), span)
+        Self::exception(
+            ClassId::NullPointerException,
+            format!("cannot {what} because it is null"),
+            span,
+        )
     }
 
     /// A spent budget.
     pub fn limit(slug: &'static str, message: String, hint: &str, span: Option<Span>) -> Self {
-        Self::new(Cause::Limit { slug, message, hint: hint.to_owned() }, span)
+        Self::new(
+            Cause::Limit {
+                slug,
+                message,
+                hint: hint.to_owned(),
+            },
+            span,
+        )
     }
 
     /// A spent memory budget.
     pub fn memory(over: OverBudget, span: Option<Span>) -> Self {
         let OverBudget { wanted, limit } = over;
-        let message = format!("the model's values need more memory than the {limit} bytes allowed ({wanted} bytes more were wanted)");
-        Self::limit("memory-limit", message, "look for a text, array or list that grows without end, or raise `max_memory`", span)
+        let message = format!(
+            "the model's values need more memory than the {limit} bytes allowed ({wanted} bytes more were wanted)"
+        );
+        Self::limit(
+            "memory-limit",
+            message,
+            "look for a text, array or list that grows without end, or raise `max_memory`",
+            span,
+        )
     }
 
     /// Why it ended.
@@ -118,18 +145,34 @@ impl Trap {
 
     /// The message for the user.
     pub fn into_diagnostic(self) -> Diagnostic {
-        let Fault { cause, span, notes, trace, n_omitted } = *self.0;
+        let Fault {
+            cause,
+            span,
+            notes,
+            trace,
+            n_omitted,
+        } = *self.0;
         let (slug, message, hint) = match cause {
             Cause::Exception(value) => ("exception", value.to_string(), None),
-            Cause::Limit { slug, message, hint } => (slug, message, Some(hint)),
-            Cause::Cancelled => ("cancelled", "the model was stopped before it had finished".to_owned(), None),
+            Cause::Limit {
+                slug,
+                message,
+                hint,
+            } => (slug, message, Some(hint)),
+            Cause::Cancelled => (
+                "cancelled",
+                "the model was stopped before it had finished".to_owned(),
+                None,
+            ),
             Cause::Exit => ("exit", "the model ended the run".to_owned(), None),
         };
         let mut diagnostic = Diagnostic::error(slug, span.unwrap_or_default(), message);
         if span.is_none() {
             diagnostic.primary = None;
         }
-        diagnostic.secondary.extend(notes.into_iter().map(|(span, text)| Label { span, text }));
+        diagnostic
+            .secondary
+            .extend(notes.into_iter().map(|(span, text)| Label { span, text }));
         diagnostic.hints.extend(hint);
         diagnostic.trace = trace;
         if n_omitted > 0 {
@@ -143,15 +186,22 @@ impl From<GraphError> for Trap {
     /// What a fault of the graph means to the model.
     fn from(error: GraphError) -> Self {
         let (class, message) = match error {
-            GraphError::DeletedNode => {
-                (ClassId::IllegalStateException, "the node was removed from the graph in an earlier step".to_owned())
-            }
-            GraphError::SelfEdge => {
-                (ClassId::IllegalArgumentException, "Cannot create an edge from a node to itself".to_owned())
-            }
+            GraphError::DeletedNode => (
+                ClassId::IllegalStateException,
+                "the node was removed from the graph in an earlier step".to_owned(),
+            ),
+            GraphError::SelfEdge => (
+                ClassId::IllegalArgumentException,
+                "Cannot create an edge from a node to itself".to_owned(),
+            ),
             GraphError::TooManyNodes { limit } => {
                 let message = format!("the model grows beyond {limit} modules");
-                return Self::limit("module-limit", message, "does a rule multiply without end? `max_modules` allows more", None);
+                return Self::limit(
+                    "module-limit",
+                    message,
+                    "does a rule multiply without end? `max_modules` allows more",
+                    None,
+                );
             }
         };
         let mut trap = Self::exception(class, message, Span::default());
@@ -187,7 +237,10 @@ mod tests {
             trap = trap.during(|| format!("in method `f{i}`"));
         }
         let diagnostic = trap.into_diagnostic();
-        assert_eq!(diagnostic.message, "java.lang.ArithmeticException: / by zero");
+        assert_eq!(
+            diagnostic.message,
+            "java.lang.ArithmeticException: / by zero"
+        );
         assert_eq!(diagnostic.trace.len(), MAX_TRACE + 1);
         assert_eq!(diagnostic.trace[MAX_TRACE], "… 12 more");
     }

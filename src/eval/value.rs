@@ -38,7 +38,6 @@ impl Value {
         Self::Text(Arc::new(Text::new(text, Charge::none())))
     }
 
-
     /// The text, if it is one.
     pub fn as_text(&self) -> Option<&Text> {
         match self {
@@ -166,8 +165,12 @@ impl Value {
             (Self::Char(a), Self::Char(b)) => a == b,
             (Self::Int(a), Self::Int(b)) => a == b,
             (Self::Long(a), Self::Long(b)) => a == b,
-            (Self::Float(a), Self::Float(b)) => a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(),
-            (Self::Double(a), Self::Double(b)) => a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan(),
+            (Self::Float(a), Self::Float(b)) => {
+                a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+            }
+            (Self::Double(a), Self::Double(b)) => {
+                a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
+            }
             (Self::Object(a), Self::Object(b)) => Arc::ptr_eq(a, b) || Object::equals(a, b),
             (Self::Null, Self::Null) => true,
             (Self::Text(a), Self::Text(b)) => a.as_str() == b.as_str(),
@@ -182,18 +185,28 @@ impl Value {
         let fold = |bits: u64| (bits ^ (bits >> 32)) as i32;
         match self {
             Self::Null => 0,
-            Self::Boolean(b) => if *b { 1231 } else { 1237 },
+            Self::Boolean(b) => {
+                if *b {
+                    1231
+                } else {
+                    1237
+                }
+            }
             Self::Long(x) => fold(*x as u64),
             Self::Float(x) => x.to_bits() as i32,
             Self::Double(x) => fold(x.to_bits()),
             Self::Text(text) => {
                 let units = text.as_str().encode_utf16();
-                units.fold(0_i32, |hash, unit| hash.wrapping_mul(31).wrapping_add(i32::from(unit)))
+                units.fold(0_i32, |hash, unit| {
+                    hash.wrapping_mul(31).wrapping_add(i32::from(unit))
+                })
             }
             Self::Object(object) => object.hash_code(),
             // Identity has no number that is the same on every run; one bucket for all is right, if slow.
             Self::Array(_) | Self::Node(_) => 1,
-            Self::Byte(_) | Self::Short(_) | Self::Char(_) | Self::Int(_) => self.as_int().unwrap_or(0),
+            Self::Byte(_) | Self::Short(_) | Self::Char(_) | Self::Int(_) => {
+                self.as_int().unwrap_or(0)
+            }
         }
     }
 

@@ -31,7 +31,10 @@ impl NodeId {
     /// The name that [`Self::to_bits`] made this number of; `None` for 0.
     pub fn from_bits(bits: u64) -> Option<Self> {
         let place = NonZeroU32::new(bits as u32)?;
-        Some(Self { place, generation: (bits >> 32) as u32 })
+        Some(Self {
+            place,
+            generation: (bits >> 32) as u32,
+        })
     }
 
     pub(super) fn generation(self) -> u32 {

@@ -36,7 +36,8 @@ mod tests {
 
     #[test]
     fn results_and_panics_come_through() {
-        let there = with_deep_stack(|bytes| (bytes, std::thread::current().name().map(str::to_owned)));
+        let there =
+            with_deep_stack(|bytes| (bytes, std::thread::current().name().map(str::to_owned)));
         assert_eq!(there, (USABLE, Some("growth".to_owned())));
         let caught = std::panic::catch_unwind(|| with_deep_stack(|_| panic!("as expected")));
         assert!(caught.is_err());

@@ -22,7 +22,11 @@ pub struct GrowthOptions {
 
 impl Default for GrowthOptions {
     fn default() -> Self {
-        Self { seed: 0, limits: Limits::default(), entry: "run".to_owned() }
+        Self {
+            seed: 0,
+            limits: Limits::default(),
+            entry: "run".to_owned(),
+        }
     }
 }
 
@@ -41,11 +45,26 @@ impl Growth {
     ///
     /// # Errors
     /// The graph may not even have its root and axiom.
-    pub fn new(model: &Model, options: GrowthOptions, output: Output, stop: StopSign) -> Result<Self, Diagnostic> {
+    pub fn new(
+        model: &Model,
+        options: GrowthOptions,
+        output: Output,
+        stop: StopSign,
+    ) -> Result<Self, Box<Diagnostic>> {
         let program = Arc::new(Program::new(model));
-        let setup = Setup { seed: options.seed, limits: options.limits, output, stop };
-        let machine = Machine::new(&program, setup).map_err(Trap::into_diagnostic)?;
-        Ok(Self { program, machine, options, n_steps: 0 })
+        let setup = Setup {
+            seed: options.seed,
+            limits: options.limits,
+            output,
+            stop,
+        };
+        let machine = Machine::new(&program, setup).map_err(boxed)?;
+        Ok(Self {
+            program,
+            machine,
+            options,
+            n_steps: 0,
+        })
     }
 
     /// Starts the model: initializes its variables, runs `init` and applies what that has queued. A model without `init`
@@ -53,7 +72,7 @@ impl Growth {
     ///
     /// # Errors
     /// What went wrong at run time, with place and trace.
-    pub fn init(&mut self) -> Result<(), Diagnostic> {
+    pub fn init(&mut self) -> Result<(), Box<Diagnostic>> {
         self.n_steps = 0;
         self.machine.step = 0;
         self.run_deep("in `init`".to_owned(), |program, machine| {
@@ -67,7 +86,7 @@ impl Growth {
     ///
     /// # Errors
     /// What went wrong at run time, or that there is no such method.
-    pub fn step(&mut self) -> Result<(), Diagnostic> {
+    pub fn step(&mut self) -> Result<(), Box<Diagnostic>> {
         let entry = self.entry()?;
         let number = self.n_steps + 1;
         self.machine.step = number;
@@ -82,7 +101,7 @@ impl Growth {
     ///
     /// # Errors
     /// As [`Growth::step`]; the steps before stay done.
-    pub fn run(&mut self, n: u64) -> Result<(), Diagnostic> {
+    pub fn run(&mut self, n: u64) -> Result<(), Box<Diagnostic>> {
         (0..n).try_for_each(|_| self.step())
     }
 
@@ -151,39 +170,47 @@ impl Growth {
     ///
     /// # Errors
     /// What went wrong in the body.
-    pub fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Diagnostic> {
+    pub fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Box<Diagnostic>> {
         self.machine.begin(SHALLOW);
-        self.program.instantiate(node, &mut self.machine).map_err(Trap::into_diagnostic)
+        self.program
+            .instantiate(node, &mut self.machine)
+            .map_err(boxed)
     }
 
     /// Frees what [`Growth::instantiate`] made.
     pub fn free(&mut self, mut made: Instantiated) {
-        self.machine.queue.free_instantiated(&mut self.machine.graph, &mut made);
+        self.machine
+            .queue
+            .free_instantiated(&mut self.machine.graph, &mut made);
     }
 
-    fn entry(&self) -> Result<MethodId, Diagnostic> {
+    fn entry(&self) -> Result<MethodId, Box<Diagnostic>> {
         let entries = self.program.entries();
         let wanted = self.options.entry.as_str();
         if let Some((_, method)) = entries.iter().find(|(name, _)| name == wanted) {
             return Ok(*method);
         }
-        let mut fault = Diagnostic::error("unknown-entry", Span::default(), format!("the model has no public method `{wanted}()` to step"));
+        let mut fault = Diagnostic::error(
+            "unknown-entry",
+            Span::default(),
+            format!("the model has no public method `{wanted}()` to step"),
+        );
         fault.primary = None;
         let names: Vec<&str> = self.entries().collect();
         if let Some(near) = nearest(wanted, names.iter().copied()) {
             fault = fault.hint(format!("did you mean `--entry {near}`?"));
         }
-        Err(match names.as_slice() {
+        Err(Box::new(match names.as_slice() {
             [] => fault.hint("write `public void run() [ … ]` with the rules of one step"),
             names => fault.hint(format!("`--entry` can be: {}", names.join(", "))),
-        })
+        }))
     }
 
     fn run_deep(
         &mut self,
         what: String,
         f: impl FnOnce(&Program, &mut Machine) -> Result<(), Trap> + Send,
-    ) -> Result<(), Diagnostic> {
+    ) -> Result<(), Box<Diagnostic>> {
         let (program, machine) = (&*self.program, &mut self.machine);
         let result = with_deep_stack(|bytes| {
             let mark = machine.stack.mark();
@@ -195,6 +222,10 @@ impl Growth {
             }
             result
         });
-        result.map_err(|trap| trap.into_diagnostic().during(what))
+        result.map_err(|trap| Box::new(trap.into_diagnostic().during(what)))
     }
+}
+
+fn boxed(trap: Trap) -> Box<Diagnostic> {
+    Box::new(trap.into_diagnostic())
 }

@@ -36,20 +36,31 @@ impl Scope<'_> {
             })),
             Aggregate::Empty => Code::Boolean(any(elements, None).map(|is_any| !is_any)),
             Aggregate::Exist => Code::Boolean(any(elements, is_boolean.then_some((at, true)))),
-            Aggregate::Forall => Code::Boolean(any(elements, Some((at, false))).map(|is_any| !is_any)),
+            Aggregate::Forall => {
+                Code::Boolean(any(elements, Some((at, false))).map(|is_any| !is_any))
+            }
             Aggregate::First => self.pick(elements, &ty, at, Pick::First),
             Aggregate::Last => self.pick(elements, &ty, at, Pick::Last),
             Aggregate::SelectRandomly => self.pick(elements, &ty, at, Pick::Random),
-            Aggregate::Sum | Aggregate::Prod | Aggregate::Min | Aggregate::Max | Aggregate::Mean => {
-                convert::number(fold(aggregate, elements, &ty, at, e.span), &e.ty)
-            }
+            Aggregate::Sum
+            | Aggregate::Prod
+            | Aggregate::Min
+            | Aggregate::Max
+            | Aggregate::Mean => convert::number(fold(aggregate, elements, &ty, at, e.span), &e.ty),
             Aggregate::Array => collected(elements, &ty, place, e.span),
             Aggregate::String => joined(elements, &ty, place, e.span),
         }
     }
 
     /// `selectWhereMin` and `selectWhereMax`: of several elements whose key is extreme the last.
-    pub(super) fn select_where(&self, is_min: bool, sequence: &Sequence, slot: Slot, key: &Expr, ty: &Type) -> Code {
+    pub(super) fn select_where(
+        &self,
+        is_min: bool,
+        sequence: &Sequence,
+        slot: Slot,
+        key: &Expr,
+        ty: &Type,
+    ) -> Code {
         let elements = self.sequence(sequence, Some(self.local(slot)));
         let key = f64::from_code(convert::number(self.expr(key), &Type::Double));
         let (Local::Word(at) | Local::Value(at)) = self.local(slot);
@@ -105,7 +116,11 @@ fn picked<T: Access>(elements: Iterate, at: u32, pick: Pick) -> Code {
             if !matches!(pick, Pick::Random) || m.random.next_int_below(n) == Some(0) {
                 found = T::load(&m.stack, at);
             }
-            Ok(if matches!(pick, Pick::First) { Turn::Stop } else { Turn::Next })
+            Ok(if matches!(pick, Pick::First) {
+                Turn::Stop
+            } else {
+                Turn::Next
+            })
         })?;
         Ok(found)
     }))
@@ -209,7 +224,11 @@ fn folded<T: Number>(aggregate: Aggregate, elements: Iterate, at: u32, span: Spa
             n += 1;
             Ok(Turn::Next)
         })?;
-        if is_mean { total.over(n, span) } else { Ok(total) }
+        if is_mean {
+            total.over(n, span)
+        } else {
+            Ok(total)
+        }
     }))
 }
 
@@ -221,7 +240,9 @@ fn collected(elements: Iterate, ty: &Type, place: Local, span: Span) -> Code {
         let (mut values, mut charge) = (vec![], m.charge(0)?);
         elements(p, m, &mut |p, m| {
             if values.len() % GROWTH == 0 {
-                charge = m.charge((values.len() + GROWTH) as u64 * size_of::<Value>() as u64).map_err(|t| t.at(span))?;
+                charge = m
+                    .charge((values.len() + GROWTH) as u64 * size_of::<Value>() as u64)
+                    .map_err(|t| t.at(span))?;
             }
             values.push(element.get(p, m)?);
             Ok(Turn::Next)

@@ -63,16 +63,21 @@ impl Scope<'_> {
 
     /// `a.length`
     pub(super) fn array_length(&self, array: &Expr, span: Span) -> Code {
-        Code::Int(Value::from_code(self.expr(array)).try_map(move |v| match v.as_array() {
-            Some(array) => Ok(i32::try_from(array.len()).unwrap_or(i32::MAX)),
-            None => Err(Trap::null("read the length of an array", span)),
-        }))
+        Code::Int(
+            Value::from_code(self.expr(array)).try_map(move |v| match v.as_array() {
+                Some(array) => Ok(i32::try_from(array.len()).unwrap_or(i32::MAX)),
+                None => Err(Trap::null("read the length of an array", span)),
+            }),
+        )
     }
 }
 
 fn put<T: Access>(value: T, array: &Array, index: usize) {
     let is_there = value.set_element(array, index);
-    debug_assert!(is_there.is_some(), "elements were converted to the type of the array");
+    debug_assert!(
+        is_there.is_some(),
+        "elements were converted to the type of the array"
+    );
 }
 
 fn negative(n: i32, span: Span) -> Trap {
@@ -99,12 +104,18 @@ pub(super) fn empty(element: &Type) -> Elements {
 
 /// `n` zeros of a kind, paid for.
 pub(super) fn new_array(machine: &Machine, kind: &Elements, n: usize) -> Result<Array, Trap> {
-    let charge = machine.charge((n as u64).saturating_mul(kind.element_bytes() as u64).saturating_add(32))?;
+    let charge = machine.charge(
+        (n as u64)
+            .saturating_mul(kind.element_bytes() as u64)
+            .saturating_add(32),
+    )?;
     Ok(Array::new(kind.zeros_like(n), charge))
 }
 
 fn build(machine: &Machine, kinds: &[Elements], sizes: &[usize]) -> Result<Value, Trap> {
-    let ([kind, inner_kinds @ ..], [size, inner_sizes @ ..]) = (kinds, sizes) else { return Ok(Value::Null) };
+    let ([kind, inner_kinds @ ..], [size, inner_sizes @ ..]) = (kinds, sizes) else {
+        return Ok(Value::Null);
+    };
     let array = new_array(machine, kind, *size)?;
     if !inner_sizes.is_empty() {
         for i in 0..*size {

@@ -37,7 +37,12 @@ impl Scope<'_> {
     /// A call of a method of the model.
     pub(super) fn call(&self, site: &CallSite<'_>, ty: &Type, span: Span) -> Code {
         let method = &self.model.methods[site.method.0 as usize];
-        let args: Vec<Code> = site.args.iter().zip(&method.params).map(|(a, ty)| self.as_type(a, ty)).collect();
+        let args: Vec<Code> = site
+            .args
+            .iter()
+            .zip(&method.params)
+            .map(|(a, ty)| self.as_type(a, ty))
+            .collect();
         let invoke = match site.receiver {
             Some(receiver) => self.invoke_on(site, self.node(receiver), args, span),
             None => invoke_static(site.method, args, span),
@@ -60,17 +65,29 @@ impl Scope<'_> {
         }
     }
 
-    fn invoke_on(&self, site: &CallSite<'_>, receiver: Source<Option<NodeId>>, args: Vec<Code>, span: Span) -> Invoke {
+    fn invoke_on(
+        &self,
+        site: &CallSite<'_>,
+        receiver: Source<Option<NodeId>>,
+        args: Vec<Code>,
+        span: Span,
+    ) -> Invoke {
         let name = self.model.methods[site.method.0 as usize].name.clone();
         let own = site.method;
         let overrides = site.is_virtual.then(|| override_table(self.model, own));
         Box::new(move |p, m| {
             let Some(node) = receiver.get(p, m)? else {
-                return Err(Trap::null(&format!("call the method `{name}` of a node"), span));
+                return Err(Trap::null(
+                    &format!("call the method `{name}` of a node"),
+                    span,
+                ));
             };
             let method = match &overrides {
                 Some(table) => {
-                    let ty = m.graph.type_of(node).map_err(|error| m.graph_trap(&error, node, span))?;
+                    let ty = m
+                        .graph
+                        .type_of(node)
+                        .map_err(|error| m.graph_trap(&error, node, span))?;
                     table[usize::from(ty.0)]
                 }
                 None => own,
@@ -104,7 +121,10 @@ impl Scope<'_> {
     pub(super) fn new_node(&self, new: &NewNode, span: Span) -> Code {
         let (ty, fill) = (new.type_id, self.fill_node(new, span));
         Code::Node(Source::code(move |p, m| {
-            let node = m.graph.create(ty).map_err(|error| Trap::from(error).at(span))?;
+            let node = m
+                .graph
+                .create(ty)
+                .map_err(|error| Trap::from(error).at(span))?;
             fill(p, m, node)?;
             Ok(Some(node))
         }))
@@ -112,14 +132,24 @@ impl Scope<'_> {
 
     /// Runs the constructor of `new`'s type on a node that exists already.
     pub(super) fn fill_node(&self, new: &NewNode, span: Span) -> FillNode {
-        match self.model.modules.iter().find(|module| module.type_id == new.type_id) {
+        match self
+            .model
+            .modules
+            .iter()
+            .find(|module| module.type_id == new.type_id)
+        {
             Some(module) => self.fill_module(new, &module.constructor.params, span),
             None => self.fill_builtin(new, span),
         }
     }
 
     fn fill_module(&self, new: &NewNode, params: &[Type], span: Span) -> FillNode {
-        let mut args: Vec<Code> = new.args.iter().zip(params).map(|(a, ty)| self.as_type(a, ty)).collect();
+        let mut args: Vec<Code> = new
+            .args
+            .iter()
+            .zip(params)
+            .map(|(a, ty)| self.as_type(a, ty))
+            .collect();
         args.extend(params[args.len()..].iter().map(zero));
         let ty = new.type_id;
         Box::new(move |p, m, node| {
@@ -133,14 +163,19 @@ impl Scope<'_> {
     fn fill_builtin(&self, new: &NewNode, span: Span) -> FillNode {
         let owner = Type::Node(new.type_id);
         let field = |id| self.field(&owner, id);
-        let setters: Vec<FillNode> =
-            new.fields.iter().zip(&new.args).map(|(id, arg)| set_field(field(*id), self.expr(arg), span)).collect();
+        let setters: Vec<FillNode> = new
+            .fields
+            .iter()
+            .zip(&new.args)
+            .map(|(id, arg)| set_field(field(*id), self.expr(arg), span))
+            .collect();
         Box::new(move |p, m, node| setters.iter().try_for_each(|set| set(p, m, node)))
     }
 }
 
 /// Fills a new node.
-pub(super) type FillNode = Box<dyn Fn(&Program, &mut Machine, NodeId) -> Result<(), Trap> + Send + Sync>;
+pub(super) type FillNode =
+    Box<dyn Fn(&Program, &mut Machine, NodeId) -> Result<(), Trap> + Send + Sync>;
 
 fn set_field(field: places::Field, value: Code, span: Span) -> FillNode {
     fn set<T: Access>(field: places::Field, value: Source<T>, span: Span) -> FillNode {
@@ -207,7 +242,11 @@ fn override_table(model: &Model, method: MethodId) -> Vec<MethodId> {
             if found == method {
                 return true;
             }
-            let origin = model.modules.iter().flat_map(|m| &m.overrides).find(|(_, new)| *new == found);
+            let origin = model
+                .modules
+                .iter()
+                .flat_map(|m| &m.overrides)
+                .find(|(_, new)| *new == found);
             match origin {
                 Some((old, new)) if old != new => found = *old,
                 _ => return false,
@@ -217,7 +256,9 @@ fn override_table(model: &Model, method: MethodId) -> Vec<MethodId> {
     let resolve = |ty: TypeId| {
         let lineage = std::iter::successors(Some(ty), |&t| model.types[t].parent);
         let mut candidates = lineage.flat_map(|t| overrides_of(t).iter());
-        candidates.find(|(old, _)| stands_for(*old)).map_or(method, |(_, new)| *new)
+        candidates
+            .find(|(old, _)| stands_for(*old))
+            .map_or(method, |(_, new)| *new)
     };
     model.types.iter().map(|(ty, _)| resolve(ty)).collect()
 }

@@ -98,11 +98,19 @@ pub(super) fn boxed(code: Code, ty: &Type) -> Source<Value> {
 
 /// The number in a box.
 fn unboxed(value: Source<Value>, to: &Type, span: Span) -> Code {
-    fn taken<T: Kind>(value: Source<Value>, span: Span, take: impl Fn(&Value) -> Option<T> + Send + Sync + 'static) -> Source<T> {
+    fn taken<T: Kind>(
+        value: Source<Value>,
+        span: Span,
+        take: impl Fn(&Value) -> Option<T> + Send + Sync + 'static,
+    ) -> Source<T> {
         value.try_map(move |v| match take(&v) {
             Some(x) => Ok(x),
             None if v.is_null() => Err(Trap::null("take the number out of a box", span)),
-            None => Err(Trap::exception(ClassId::ClassCastException, format!("`{v}` is not of the type wanted here"), span)),
+            None => Err(Trap::exception(
+                ClassId::ClassCastException,
+                format!("`{v}` is not of the type wanted here"),
+                span,
+            )),
         })
     }
     match to {

@@ -14,7 +14,8 @@ use crate::graph::{Graph, NodeId, TypeId};
 use crate::library::ClassId;
 
 /// Appends the text of an expression's value.
-pub(super) type TextWriter = Box<dyn Fn(&Program, &mut Machine, &mut String) -> Result<(), Trap> + Send + Sync>;
+pub(super) type TextWriter =
+    Box<dyn Fn(&Program, &mut Machine, &mut String) -> Result<(), Trap> + Send + Sync>;
 
 impl Scope<'_> {
     /// The code of an expression.
@@ -28,17 +29,36 @@ impl Scope<'_> {
             ExprKind::Negate(operand) => self.negate(operand, &e.ty),
             ExprKind::Complement(operand) => self.complement(operand, &e.ty),
             ExprKind::Not(operand) => Code::Boolean(self.boolean(operand).map(|x| !x)),
-            ExprKind::Binary { op, operands, left, right } => self.binary(*op, operands, [left, right], e.span),
+            ExprKind::Binary {
+                op,
+                operands,
+                left,
+                right,
+            } => self.binary(*op, operands, [left, right], e.span),
             ExprKind::AndThen(left, right) => self.and_then(left, right),
             ExprKind::OrElse(left, right) => self.or_else(left, right),
             ExprKind::Concat(parts) => self.concat(parts, e.span),
-            ExprKind::Conditional(condition, yes, no) => self.conditional(condition, [yes, no], &e.ty),
-            ExprKind::Assign(place, value) => self.assign(place, value, e.span),
-            ExprKind::Compound { place, op: Some(op), operands, value } => {
-                self.compound(place, *op, operands, value, e)
+            ExprKind::Conditional(condition, yes, no) => {
+                self.conditional(condition, [yes, no], &e.ty)
             }
-            ExprKind::Compound { place, op: None, value, .. } => self.append(place, value, e.span),
-            ExprKind::IncDec { place, by, is_prefix } => self.inc_dec(place, *by, *is_prefix, e),
+            ExprKind::Assign(place, value) => self.assign(place, value, e.span),
+            ExprKind::Compound {
+                place,
+                op: Some(op),
+                operands,
+                value,
+            } => self.compound(place, *op, operands, value, e),
+            ExprKind::Compound {
+                place,
+                op: None,
+                value,
+                ..
+            } => self.append(place, value, e.span),
+            ExprKind::IncDec {
+                place,
+                by,
+                is_prefix,
+            } => self.inc_dec(place, *by, *is_prefix, e),
             _ => self.object_expr(e),
         }
     }
@@ -46,15 +66,30 @@ impl Scope<'_> {
     /// Expressions that deal with nodes, objects, arrays, sequences and calls.
     fn object_expr(&self, e: &Expr) -> Code {
         match &e.kind {
-            ExprKind::Deferred { node, field, op, value } => {
-                self.deferred_assignment(node, *field, *op, value, e.span)
-            },
-            ExprKind::Call { method, receiver, args, is_virtual } => {
-                let call = calls::CallSite { method: *method, receiver: receiver.as_deref(), args, is_virtual: *is_virtual };
+            ExprKind::Deferred {
+                node,
+                field,
+                op,
+                value,
+            } => self.deferred_assignment(node, *field, *op, value, e.span),
+            ExprKind::Call {
+                method,
+                receiver,
+                args,
+                is_virtual,
+            } => {
+                let call = calls::CallSite {
+                    method: *method,
+                    receiver: receiver.as_deref(),
+                    args,
+                    is_virtual: *is_virtual,
+                };
                 self.call(&call, &e.ty, e.span)
             }
             ExprKind::Library(function, args) => self.library_function(*function, args, e),
-            ExprKind::LibraryMethod(method, receiver, args) => self.library_method(*method, receiver, args, e),
+            ExprKind::LibraryMethod(method, receiver, args) => {
+                self.library_method(*method, receiver, args, e)
+            }
             ExprKind::NewObject(constructor, args) => self.new_object(*constructor, args, e),
             ExprKind::NewNode(new) => self.new_node(new, e.span),
             ExprKind::With { object, slot, body } => self.with(object, *slot, body),
@@ -62,9 +97,12 @@ impl Scope<'_> {
             ExprKind::ArrayLiteral(values) => self.array_literal(values, &e.ty, e.span),
             ExprKind::ArrayLength(array) => self.array_length(array, e.span),
             ExprKind::Aggregate(aggregate, sequence) => self.aggregate(*aggregate, sequence, e),
-            ExprKind::SelectWhere { is_min, sequence, slot, key } => {
-                self.select_where(*is_min, sequence, *slot, key, &e.ty)
-            }
+            ExprKind::SelectWhere {
+                is_min,
+                sequence,
+                slot,
+                key,
+            } => self.select_where(*is_min, sequence, *slot, key, &e.ty),
             ExprKind::Root => Code::Node(Source::code(|_, m| Ok(Some(m.graph.root())))),
             ExprKind::Comma(exprs) => self.comma(exprs),
             // `expr` has dealt with the rest.
@@ -104,7 +142,13 @@ impl Scope<'_> {
     fn conditional(&self, condition: &Expr, branches: [&Expr; 2], ty: &Type) -> Code {
         fn choose<T: FromCode>(condition: Source<bool>, [yes, no]: [Code; 2]) -> Code {
             let (yes, no) = (T::from_code(yes), T::from_code(no));
-            T::into_code(Source::code(move |p, m| if condition.get(p, m)? { yes.get(p, m) } else { no.get(p, m) }))
+            T::into_code(Source::code(move |p, m| {
+                if condition.get(p, m)? {
+                    yes.get(p, m)
+                } else {
+                    no.get(p, m)
+                }
+            }))
         }
         let condition = self.boolean(condition);
         let branches = branches.map(|branch| self.expr(branch));
@@ -120,7 +164,9 @@ impl Scope<'_> {
     }
 
     fn comma(&self, exprs: &[Expr]) -> Code {
-        let Some((last, first)) = exprs.split_last() else { return Code::void(|_, _| Ok(())) };
+        let Some((last, first)) = exprs.split_last() else {
+            return Code::void(|_, _| Ok(()));
+        };
         let first: Vec<Eval<()>> = first.iter().map(|e| self.expr(e).into_void()).collect();
         let last = self.expr(last);
         fn after<T: FromCode>(first: Vec<Eval<()>>, last: Source<T>) -> Code {
@@ -157,14 +203,23 @@ impl Scope<'_> {
             return Code::Node(Source::code(move |p, m| match node.get(p, m)? {
                 Value::Null => Ok(None),
                 Value::Node(node) if m.graph.is_a(node, wanted) => Ok(Some(node)),
-                other => Err(bad_cast(m, &other, &m.graph.types()[wanted].name.clone(), span)),
+                other => Err(bad_cast(
+                    m,
+                    &other,
+                    &m.graph.types()[wanted].name.clone(),
+                    span,
+                )),
             }));
         }
         let (value, test) = (self.value(operand), type_test(ty));
         let name = type_name(ty);
         Code::Value(Source::code(move |p, m| {
             let value = value.get(p, m)?;
-            if value.is_null() || test(&m.graph, &value) { Ok(value) } else { Err(bad_cast(m, &value, &name, span)) }
+            if value.is_null() || test(&m.graph, &value) {
+                Ok(value)
+            } else {
+                Err(bad_cast(m, &value, &name, span))
+            }
         }))
     }
 
@@ -172,7 +227,9 @@ impl Scope<'_> {
         if let Type::Node(wanted) = *ty {
             let node = self.node(operand);
             return Code::Boolean(Source::code(move |p, m| {
-                Ok(node.get(p, m)?.is_some_and(|node| m.graph.is_a(node, wanted)))
+                Ok(node
+                    .get(p, m)?
+                    .is_some_and(|node| m.graph.is_a(node, wanted)))
             }));
         }
         let (value, test) = (self.value(operand), type_test(ty));
@@ -204,7 +261,9 @@ fn type_test(ty: &Type) -> TypeTest {
         Type::String => Box::new(|_, v| v.as_text().is_some()),
         Type::Array(_) => Box::new(|_, v| v.as_array().is_some()),
         Type::Class(class) => Box::new(move |_, v| v.class().is_some_and(|c| c.is_a(class))),
-        Type::Node(ty) => Box::new(move |graph, v| matches!(v, Value::Node(n) if graph.is_a(*n, ty))),
+        Type::Node(ty) => {
+            Box::new(move |graph, v| matches!(v, Value::Node(n) if graph.is_a(*n, ty)))
+        }
         _ => Box::new(|_, _| true),
     }
 }

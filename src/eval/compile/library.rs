@@ -21,7 +21,13 @@ impl Scope<'_> {
         self.behave(function(id), args, &e.ty, e.span)
     }
 
-    pub(super) fn library_method(&self, id: MethodId, receiver: &Expr, args: &[Expr], e: &Expr) -> Code {
+    pub(super) fn library_method(
+        &self,
+        id: MethodId,
+        receiver: &Expr,
+        args: &[Expr],
+        e: &Expr,
+    ) -> Code {
         let mut all = vec![receiver.clone()];
         all.extend_from_slice(args);
         self.behave(method(id), &all, &e.ty, e.span)
@@ -37,7 +43,15 @@ impl Scope<'_> {
         };
         Code::Value(Source::code(move |program, machine| {
             with_arguments(&args, program, machine, |machine, args| {
-                maker(&mut Context { program, machine, span }, class, args)
+                maker(
+                    &mut Context {
+                        program,
+                        machine,
+                        span,
+                    },
+                    class,
+                    args,
+                )
             })
         }))
     }
@@ -47,11 +61,17 @@ impl Scope<'_> {
             Behaviour::Int1(f) => Code::Int(self.argument(args, 0).map(f)),
             Behaviour::Int2(f) => Code::Int(self.argument(args, 0).zip(self.argument(args, 1), f)),
             Behaviour::Long1(f) => Code::Long(self.argument(args, 0).map(f)),
-            Behaviour::Long2(f) => Code::Long(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Long2(f) => {
+                Code::Long(self.argument(args, 0).zip(self.argument(args, 1), f))
+            }
             Behaviour::Float1(f) => Code::Float(self.argument(args, 0).map(f)),
-            Behaviour::Float2(f) => Code::Float(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Float2(f) => {
+                Code::Float(self.argument(args, 0).zip(self.argument(args, 1), f))
+            }
             Behaviour::Double1(f) => Code::Double(self.argument(args, 0).map(f)),
-            Behaviour::Double2(f) => Code::Double(self.argument(args, 0).zip(self.argument(args, 1), f)),
+            Behaviour::Double2(f) => {
+                Code::Double(self.argument(args, 0).zip(self.argument(args, 1), f))
+            }
             Behaviour::FloatToInt(f) => Code::Int(self.argument(args, 0).map(f)),
             Behaviour::DoubleToLong(f) => Code::Long(self.argument(args, 0).map(f)),
             Behaviour::Native(native) => self.native(native, args, ty, span),
@@ -59,14 +79,22 @@ impl Scope<'_> {
     }
 
     fn argument<T: Access>(&self, args: &[Expr], index: usize) -> Source<T> {
-        args.get(index).map_or_else(|| Source::Constant(T::default()), |arg| self.source(arg))
+        args.get(index)
+            .map_or_else(|| Source::Constant(T::default()), |arg| self.source(arg))
     }
 
     fn native(&self, native: Native, args: &[Expr], ty: &Type, span: Span) -> Code {
         let args = self.values(args);
         let call = move |program: &Program, machine: &mut Machine| {
             with_arguments(&args, program, machine, |machine, args| {
-                native(&mut Context { program, machine, span }, args)
+                native(
+                    &mut Context {
+                        program,
+                        machine,
+                        span,
+                    },
+                    args,
+                )
             })
         };
         if *ty == Type::Void {

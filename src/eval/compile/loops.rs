@@ -1,15 +1,23 @@
 //! Loops.
 
 use super::Scope;
+use super::sequences::Turn;
 use crate::check::model::{Sequence, Slot, Stmt, StmtKind};
 use crate::diag::Span;
 use crate::eval::code::{Eval, Exec, Flow};
-use super::sequences::Turn;
 
 impl Scope<'_> {
     /// `while`, `do` and `for (;;)`.
     pub(super) fn counted_loop(&self, s: &Stmt) -> Exec {
-        let StmtKind::Loop { label, init, cond, is_do, update, body } = &s.kind else {
+        let StmtKind::Loop {
+            label,
+            init,
+            cond,
+            is_do,
+            update,
+            body,
+        } = &s.kind
+        else {
             return Box::new(|_, _| Ok(Flow::Next));
         };
         let (own, is_do, span) = (*label, *is_do, s.span);

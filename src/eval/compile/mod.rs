@@ -42,15 +42,28 @@ pub(super) struct Scope<'m> {
 
 impl<'m> Scope<'m> {
     /// A frame with slots of these types.
-    pub(super) fn new(model: &'m Model, outline: &'m Outline, frame: &[Type], result: &'m Type) -> Self {
+    pub(super) fn new(
+        model: &'m Model,
+        outline: &'m Outline,
+        frame: &[Type],
+        result: &'m Type,
+    ) -> Self {
         let locals = Layout::new(frame);
         let (n_words, n_values) = locals.size();
-        Self { model, outline, locals, result, n_words: Cell::new(n_words), n_values: Cell::new(n_values) }
+        Self {
+            model,
+            outline,
+            locals,
+            result,
+            n_words: Cell::new(n_words),
+            n_values: Cell::new(n_values),
+        }
     }
 
     /// The layout that the code made needs.
     pub(super) fn into_layout(self) -> Layout {
-        self.locals.with_size(self.n_words.get(), self.n_values.get())
+        self.locals
+            .with_size(self.n_words.get(), self.n_values.get())
     }
 
     fn local(&self, slot: Slot) -> Local {
@@ -63,7 +76,11 @@ impl<'m> Scope<'m> {
 
     /// Place for a value that no variable of the model holds.
     fn temporary(&self, ty: &Type) -> u32 {
-        let counter = if is_word(ty) { &self.n_words } else { &self.n_values };
+        let counter = if is_word(ty) {
+            &self.n_words
+        } else {
+            &self.n_values
+        };
         let at = counter.get();
         counter.set(at.saturating_add(1));
         at

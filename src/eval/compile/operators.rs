@@ -12,19 +12,29 @@ use crate::library::ClassId;
 use crate::math::functions::pow;
 
 impl Scope<'_> {
-    pub(super) fn binary(&self, op: Operator, operands: &Type, sides: [&Expr; 2], span: Span) -> Code {
+    pub(super) fn binary(
+        &self,
+        op: Operator,
+        operands: &Type,
+        sides: [&Expr; 2],
+        span: Span,
+    ) -> Code {
         let [left, right] = sides.map(|side| self.expr(side));
         combine(op, operands, left, right, span)
     }
 
     pub(super) fn and_then(&self, left: &Expr, right: &Expr) -> Code {
         let (left, right) = (self.boolean(left), self.boolean(right));
-        Code::Boolean(Source::code(move |p, m| Ok(left.get(p, m)? && right.get(p, m)?)))
+        Code::Boolean(Source::code(move |p, m| {
+            Ok(left.get(p, m)? && right.get(p, m)?)
+        }))
     }
 
     pub(super) fn or_else(&self, left: &Expr, right: &Expr) -> Code {
         let (left, right) = (self.boolean(left), self.boolean(right));
-        Code::Boolean(Source::code(move |p, m| Ok(left.get(p, m)? || right.get(p, m)?)))
+        Code::Boolean(Source::code(move |p, m| {
+            Ok(left.get(p, m)? || right.get(p, m)?)
+        }))
     }
 
     pub(super) fn negate(&self, operand: &Expr, ty: &Type) -> Code {
@@ -50,9 +60,12 @@ impl Scope<'_> {
 pub(super) fn combine(op: Operator, operands: &Type, left: Code, right: Code, span: Span) -> Code {
     match operands {
         Type::Boolean => booleans(op, FromCode::from_code(left), FromCode::from_code(right)),
-        Type::Byte | Type::Short | Type::Char | Type::Int => {
-            ints(op, FromCode::from_code(left), FromCode::from_code(number(right, &Type::Int)), span)
-        }
+        Type::Byte | Type::Short | Type::Char | Type::Int => ints(
+            op,
+            FromCode::from_code(left),
+            FromCode::from_code(number(right, &Type::Int)),
+            span,
+        ),
         Type::Long => longs(op, FromCode::from_code(left), right, span),
         Type::Float => floats(op, FromCode::from_code(left), FromCode::from_code(right)),
         Type::Double => doubles(op, FromCode::from_code(left), FromCode::from_code(right)),
@@ -94,10 +107,18 @@ fn ints(op: Operator, a: Source<i32>, b: Source<i32>, span: Span) -> Code {
         Operator::Sub => a.zip(b, i32::wrapping_sub),
         Operator::Mul => a.zip(b, i32::wrapping_mul),
         Operator::Div => a.try_zip(b, move |a, b| {
-            if b == 0 { Err(divided_by_zero(span)) } else { Ok(a.wrapping_div(b)) }
+            if b == 0 {
+                Err(divided_by_zero(span))
+            } else {
+                Ok(a.wrapping_div(b))
+            }
         }),
         Operator::Rem => a.try_zip(b, move |a, b| {
-            if b == 0 { Err(divided_by_zero(span)) } else { Ok(a.wrapping_rem(b)) }
+            if b == 0 {
+                Err(divided_by_zero(span))
+            } else {
+                Ok(a.wrapping_rem(b))
+            }
         }),
         // Only the five lowest bits of the distance count, as in Java.
         Operator::Shl => a.zip(b, |a, b| a.wrapping_shl(b as u32)),
@@ -106,7 +127,9 @@ fn ints(op: Operator, a: Source<i32>, b: Source<i32>, span: Span) -> Code {
         Operator::And => a.zip(b, |a, b| a & b),
         Operator::Or => a.zip(b, |a, b| a | b),
         Operator::Xor => a.zip(b, |a, b| a ^ b),
-        Operator::Pow => return Code::Float(a.zip(b, |a, b| pow(f64::from(a), f64::from(b)) as f32)),
+        Operator::Pow => {
+            return Code::Float(a.zip(b, |a, b| pow(f64::from(a), f64::from(b)) as f32));
+        }
         op => return comparison!(op, a, b),
     })
 }
@@ -126,10 +149,18 @@ fn longs(op: Operator, a: Source<i64>, right: Code, span: Span) -> Code {
         Operator::Sub => a.zip(b, i64::wrapping_sub),
         Operator::Mul => a.zip(b, i64::wrapping_mul),
         Operator::Div => a.try_zip(b, move |a, b| {
-            if b == 0 { Err(divided_by_zero(span)) } else { Ok(a.wrapping_div(b)) }
+            if b == 0 {
+                Err(divided_by_zero(span))
+            } else {
+                Ok(a.wrapping_div(b))
+            }
         }),
         Operator::Rem => a.try_zip(b, move |a, b| {
-            if b == 0 { Err(divided_by_zero(span)) } else { Ok(a.wrapping_rem(b)) }
+            if b == 0 {
+                Err(divided_by_zero(span))
+            } else {
+                Ok(a.wrapping_rem(b))
+            }
         }),
         Operator::And => a.zip(b, |a, b| a & b),
         Operator::Or => a.zip(b, |a, b| a | b),

@@ -55,9 +55,13 @@ impl Scope<'_> {
         match place {
             Place::Local(slot) => Target::Local(self.local(*slot)),
             Place::Static(StaticId(id)) => Target::Static(self.static_local(*id)),
-            Place::Field(node, field) => Target::Field(self.node(node), self.field(&node.ty, *field)),
+            Place::Field(node, field) => {
+                Target::Field(self.node(node), self.field(&node.ty, *field))
+            }
             Place::Element(array, index) => Target::Element(self.value(array), self.int(index)),
-            Place::Member(object, get, set) => Target::Member(self.value(object), getter(*get), setter(*set)),
+            Place::Member(object, get, set) => {
+                Target::Member(self.value(object), getter(*get), setter(*set))
+            }
         }
     }
 
@@ -67,7 +71,9 @@ impl Scope<'_> {
             Type::Node(ty) => self.model.types[*ty].fields.as_slice(),
             _ => &[],
         };
-        let name = fields.get(usize::from(id.0)).map_or_else(|| "?".into(), |f| Arc::clone(&f.name));
+        let name = fields
+            .get(usize::from(id.0))
+            .map_or_else(|| "?".into(), |f| Arc::clone(&f.name));
         Field { id, name }
     }
 
@@ -98,7 +104,10 @@ impl Scope<'_> {
 
     /// `place = value`; the value of the expression is the value stored.
     pub(super) fn assign(&self, place: &Place, value: &Expr, span: Span) -> Code {
-        with_kind!(&self.stored_type(place, &value.ty), self.assign_kind(place, value, span))
+        with_kind!(
+            &self.stored_type(place, &value.ty),
+            self.assign_kind(place, value, span)
+        )
     }
 
     /// The type in which a value is stored: its own, but an untyped null becomes what the place holds.
@@ -151,8 +160,18 @@ impl Scope<'_> {
     }
 
     /// `place op= value`, computed in `operands`, narrowed to the place's type.
-    pub(super) fn compound(&self, place: &Place, op: Operator, operands: &Type, value: &Expr, result: &Expr) -> Code {
-        with_kind!(&result.ty, self.compound_kind(place, op, operands, value, result))
+    pub(super) fn compound(
+        &self,
+        place: &Place,
+        op: Operator,
+        operands: &Type,
+        value: &Expr,
+        result: &Expr,
+    ) -> Code {
+        with_kind!(
+            &result.ty,
+            self.compound_kind(place, op, operands, value, result)
+        )
     }
 
     fn compound_kind<T: Access>(
@@ -171,7 +190,10 @@ impl Scope<'_> {
             _ => self.temporary(ty),
         };
         let left = number(T::into_code(Source::Local(old)), operands);
-        let new: Source<T> = T::from_code(number(combine(op, operands, left, self.expr(value), span), ty));
+        let new: Source<T> = T::from_code(number(
+            combine(op, operands, left, self.expr(value), span),
+            ty,
+        ));
         T::into_code(modify(target, old, new, span))
     }
 
@@ -198,7 +220,13 @@ impl Scope<'_> {
         with_kind!(&result.ty, self.inc_dec_kind(place, by, is_prefix, result))
     }
 
-    fn inc_dec_kind<T: Access>(&self, place: &Place, by: i8, is_prefix: bool, result: &Expr) -> Code {
+    fn inc_dec_kind<T: Access>(
+        &self,
+        place: &Place,
+        by: i8,
+        is_prefix: bool,
+        result: &Expr,
+    ) -> Code {
         let (ty, span) = (&result.ty, result.span);
         let old = self.temporary(ty);
         let one = number(Code::Int(Source::Constant(i32::from(by))), ty);
@@ -273,7 +301,8 @@ pub(super) fn read_field<T: Access>(
     span: Span,
 ) -> Result<T, Trap> {
     match node {
-        Some(id) => T::field(&machine.graph, id, field.id).map_err(|error| machine.graph_trap(&error, id, span)),
+        Some(id) => T::field(&machine.graph, id, field.id)
+            .map_err(|error| machine.graph_trap(&error, id, span)),
         None => Err(null_field("read", field, span)),
     }
 }
@@ -286,41 +315,65 @@ pub(super) fn write_field<T: Access>(
     value: T,
     span: Span,
 ) -> Result<(), Trap> {
-    let Some(id) = node else { return Err(null_field("assign", field, span)) };
-    value.set_field(&mut machine.graph, id, field.id).map_err(|error| machine.graph_trap(&error, id, span))
+    let Some(id) = node else {
+        return Err(null_field("assign", field, span));
+    };
+    value
+        .set_field(&mut machine.graph, id, field.id)
+        .map_err(|error| machine.graph_trap(&error, id, span))
 }
 
 #[cold]
 fn null_field(verb: &str, field: &Field, span: Span) -> Trap {
-    let message = format!("Cannot {verb} field \"{}\" because the object is null", field.name);
+    let message = format!(
+        "Cannot {verb} field \"{}\" because the object is null",
+        field.name
+    );
     Trap::exception(ClassId::NullPointerException, message, span)
 }
 
 fn read_element<T: Access>(array: &Value, index: i32, span: Span) -> Result<T, Trap> {
-    let Some(array) = array.as_array() else { return Err(Trap::null("read an element of an array", span)) };
-    let found = usize::try_from(index).ok().and_then(|i| T::element(array, i));
+    let Some(array) = array.as_array() else {
+        return Err(Trap::null("read an element of an array", span));
+    };
+    let found = usize::try_from(index)
+        .ok()
+        .and_then(|i| T::element(array, i));
     found.ok_or_else(|| bad_index(index, array.len(), span))
 }
 
 fn write_element<T: Access>(array: &Value, index: i32, value: T, span: Span) -> Result<(), Trap> {
-    let Some(array) = array.as_array() else { return Err(Trap::null("write an element of an array", span)) };
-    let written = usize::try_from(index).ok().and_then(|i| value.set_element(array, i));
+    let Some(array) = array.as_array() else {
+        return Err(Trap::null("write an element of an array", span));
+    };
+    let written = usize::try_from(index)
+        .ok()
+        .and_then(|i| value.set_element(array, i));
     written.ok_or_else(|| bad_index(index, array.len(), span))
 }
 
 #[cold]
 fn bad_index(index: i32, length: usize, span: Span) -> Trap {
-    out_of_bounds(ClassId::ArrayIndexOutOfBoundsException, i64::from(index), length, span)
+    out_of_bounds(
+        ClassId::ArrayIndexOutOfBoundsException,
+        i64::from(index),
+        length,
+        span,
+    )
 }
 
 fn read_member<T: Access>(object: &Value, get: Getter, span: Span) -> Result<T, Trap> {
-    let Some(found) = object.as_object() else { return Err(Trap::null("read a member of an object", span)) };
+    let Some(found) = object.as_object() else {
+        return Err(Trap::null("read a member of an object", span));
+    };
     let value = get(&found.lock());
     Ok(T::unboxed(&value))
 }
 
 fn write_member<T: Access>(object: &Value, set: Setter, value: T, span: Span) -> Result<(), Trap> {
-    let Some(found) = object.as_object() else { return Err(Trap::null("write a member of an object", span)) };
+    let Some(found) = object.as_object() else {
+        return Err(Trap::null("write a member of an object", span));
+    };
     set(&mut found.lock(), &value.boxed());
     Ok(())
 }

@@ -51,11 +51,21 @@ impl Scope<'_> {
             }),
             Production::ForEach(slot, sequence, pieces) => {
                 let sequence = self.sequence(sequence, slot.map(|s| self.local(s)));
-                repeated(sequence, self.productions(pieces), self.production_span(pieces))
+                repeated(
+                    sequence,
+                    self.productions(pieces),
+                    self.production_span(pieces),
+                )
             }
-            Production::Loop { init, cond, update, body } => {
+            Production::Loop {
+                init,
+                cond,
+                update,
+                body,
+            } => {
                 let cond = cond.as_ref().map(|c| self.boolean(c));
-                let update: Vec<Eval<()>> = update.iter().map(|e| self.expr(e).into_void()).collect();
+                let update: Vec<Eval<()>> =
+                    update.iter().map(|e| self.expr(e).into_void()).collect();
                 let span = self.production_span(body);
                 let (init, body) = (self.block(init), self.productions(body));
                 Box::new(move |p, m| {
@@ -79,8 +89,18 @@ impl Scope<'_> {
                 })
             }
             Production::If(condition, yes, no) => {
-                let (condition, yes, no) = (self.boolean(condition), self.productions(yes), self.productions(no));
-                Box::new(move |p, m| if condition.get(p, m)? { yes(p, m) } else { no(p, m) })
+                let (condition, yes, no) = (
+                    self.boolean(condition),
+                    self.productions(yes),
+                    self.productions(no),
+                );
+                Box::new(move |p, m| {
+                    if condition.get(p, m)? {
+                        yes(p, m)
+                    } else {
+                        no(p, m)
+                    }
+                })
             }
             Production::Code(statements) => self.block(statements),
             Production::Break => Box::new(|_, _| Ok(Flow::Break(Label::Innermost))),
@@ -99,11 +119,15 @@ impl Scope<'_> {
             at
         });
         Box::new(move |p, m| {
-            let Some(node) = node.get(p, m)? else { return Err(Trap::null("add a node to the graph", span)) };
+            let Some(node) = node.get(p, m)? else {
+                return Err(Trap::null("add a node to the graph", span));
+            };
             if let Some(at) = slot {
                 Some(node).store(&mut m.stack, at);
             }
-            m.queue.node(&mut m.graph, node).map_err(|error| m.graph_trap(&error, node, span))?;
+            m.queue
+                .node(&mut m.graph, node)
+                .map_err(|error| m.graph_trap(&error, node, span))?;
             Ok(Flow::Next)
         })
     }
@@ -113,7 +137,9 @@ impl Scope<'_> {
         let nested = |piece: &Production| match piece {
             Production::Node { node, .. } => Some(node.span),
             Production::If(condition, ..) => Some(condition.span),
-            Production::Branch(inner) | Production::Group(inner) => Some(self.production_span(inner)),
+            Production::Branch(inner) | Production::Group(inner) => {
+                Some(self.production_span(inner))
+            }
             Production::Code(statements) => statements.first().map(|s| s.span),
             _ => None,
         };

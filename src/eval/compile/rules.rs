@@ -29,7 +29,8 @@ pub(super) enum PatternCode {
     Equal(FieldTest),
 }
 
-type FieldTest = Box<dyn Fn(&Program, &mut Machine, NodeId, FieldId) -> Result<bool, Trap> + Send + Sync>;
+type FieldTest =
+    Box<dyn Fn(&Program, &mut Machine, NodeId, FieldId) -> Result<bool, Trap> + Send + Sync>;
 /// Stores a field of a matched node in a local variable.
 type Binder = Box<dyn Fn(&mut Machine, NodeId, FieldId) -> Result<(), Trap> + Send + Sync>;
 
@@ -37,7 +38,11 @@ impl Scope<'_> {
     /// Compiles a pattern. Slots of labels become offsets of words, slots of parameters become numbers of binders.
     pub(super) fn pattern(&self, pattern: &Pattern<Expr>) -> CompiledPattern {
         let mut binders = vec![];
-        let nodes = pattern.nodes.iter().map(|node| self.pattern_node(node, &mut binders)).collect();
+        let nodes = pattern
+            .nodes
+            .iter()
+            .map(|node| self.pattern_node(node, &mut binders))
+            .collect();
         let condition = |c: &Condition<Expr>| Condition {
             expr: PatternCode::Condition(self.boolean(&c.expr)),
             needs: c.needs,
@@ -50,10 +55,18 @@ impl Scope<'_> {
             last: pattern.last,
             span: pattern.span,
         };
-        CompiledPattern { plan: Plan::new(&pattern), pattern, binders }
+        CompiledPattern {
+            plan: Plan::new(&pattern),
+            pattern,
+            binders,
+        }
     }
 
-    fn pattern_node(&self, node: &PatternNode<Expr>, binders: &mut Vec<Binder>) -> PatternNode<PatternCode> {
+    fn pattern_node(
+        &self,
+        node: &PatternNode<Expr>,
+        binders: &mut Vec<Binder>,
+    ) -> PatternNode<PatternCode> {
         let ty = match &node.what {
             Candidate::Type(ty) => *ty,
             _ => TypeId(0),
@@ -63,9 +76,10 @@ impl Scope<'_> {
                 binders.push(self.binder(ty, *field, Slot(*slot)));
                 PatternArg::Bind(*field, (binders.len() - 1) as u16)
             }
-            PatternArg::Equal(field, value) => {
-                PatternArg::Equal(*field, PatternCode::Equal(with_kind!(&value.ty, self.field_test(value))))
-            }
+            PatternArg::Equal(field, value) => PatternArg::Equal(
+                *field,
+                PatternCode::Equal(with_kind!(&value.ty, self.field_test(value))),
+            ),
         });
         let args = args.collect();
         let what = match &node.what {
@@ -78,13 +92,22 @@ impl Scope<'_> {
         let slot = node.slot.map(|slot| match self.local(Slot(slot)) {
             Local::Word(at) | Local::Value(at) => at as u16,
         });
-        PatternNode { what, slot, args, is_context: node.is_context, span: node.span }
+        PatternNode {
+            what,
+            slot,
+            args,
+            is_context: node.is_context,
+            span: node.span,
+        }
     }
 
     /// The binder of a field; what the local variable is decides how the field is read.
     fn binder(&self, ty: TypeId, field: FieldId, slot: Slot) -> Binder {
         use crate::graph::FieldKind;
-        let kind = self.model.types[ty].fields.get(usize::from(field.0)).map(|f| f.kind);
+        let kind = self.model.types[ty]
+            .fields
+            .get(usize::from(field.0))
+            .map(|f| f.kind);
         match (self.local(slot), kind) {
             (Local::Word(at), Some(FieldKind::Boolean)) => bind::<bool>(at),
             (Local::Word(at), Some(FieldKind::Long)) => bind::<i64>(at),
@@ -116,22 +139,34 @@ impl Scope<'_> {
         Box::new(move |program, machine| {
             let mode = machine.mode();
             let mut left_by = Flow::Next;
-            let mut env = Env { program, machine, compiled: &compiled };
-            rewrite::search(&compiled.pattern, &compiled.plan, mode.excludes_consumed, &mut env, &mut |env, nodes| {
-                env.machine.tick(span)?;
-                if !env.admit(mode) {
-                    return Ok(rewrite::Flow::Continue);
-                }
-                let flow = env.apply(arrow, nodes, &body).map_err(|trap| note_match(trap, env.machine, nodes, span))?;
-                Ok(match flow {
-                    Flow::Next | Flow::Continue(Label::Innermost) => rewrite::Flow::Continue,
-                    Flow::Break(Label::Innermost) => rewrite::Flow::Stop,
-                    flow => {
-                        left_by = flow;
-                        rewrite::Flow::Stop
+            let mut env = Env {
+                program,
+                machine,
+                compiled: &compiled,
+            };
+            rewrite::search(
+                &compiled.pattern,
+                &compiled.plan,
+                mode.excludes_consumed,
+                &mut env,
+                &mut |env, nodes| {
+                    env.machine.tick(span)?;
+                    if !env.admit(mode) {
+                        return Ok(rewrite::Flow::Continue);
                     }
-                })
-            })?;
+                    let flow = env
+                        .apply(arrow, nodes, &body)
+                        .map_err(|trap| note_match(trap, env.machine, nodes, span))?;
+                    Ok(match flow {
+                        Flow::Next | Flow::Continue(Label::Innermost) => rewrite::Flow::Continue,
+                        Flow::Break(Label::Innermost) => rewrite::Flow::Stop,
+                        flow => {
+                            left_by = flow;
+                            rewrite::Flow::Stop
+                        }
+                    })
+                },
+            )?;
             Ok(left_by)
         })
     }
@@ -147,15 +182,26 @@ impl Scope<'_> {
     ) -> Code {
         let (target, value) = (self.node(node), self.expr(value));
         Code::void(move |p: &Program, m: &mut Machine| {
-            let Some(node) = target.get(p, m)? else { return Err(Trap::null("assign to a field of a node", span)) };
+            let Some(node) = target.get(p, m)? else {
+                return Err(Trap::null("assign to a field of a node", span));
+            };
             let value = deferred_value(&value, p, m)?;
-            m.queue.defer(Assignment { node, field, op, value });
+            m.queue.defer(Assignment {
+                node,
+                field,
+                op,
+                value,
+            });
             Ok(())
         })
     }
 }
 
-fn deferred_value(value: &Code, p: &Program, m: &mut Machine) -> Result<DeferredValue<Value>, Trap> {
+fn deferred_value(
+    value: &Code,
+    p: &Program,
+    m: &mut Machine,
+) -> Result<DeferredValue<Value>, Trap> {
     Ok(match value {
         Code::Void(code) => {
             code(p, m)?;
@@ -197,7 +243,12 @@ pub(super) struct Env<'a> {
 
 impl Env<'_> {
     fn admit(&mut self, mode: rewrite::Mode) -> bool {
-        let Machine { queue, graph, random, .. } = &mut *self.machine;
+        let Machine {
+            queue,
+            graph,
+            random,
+            ..
+        } = &mut *self.machine;
         queue.admit(graph, mode, |n| random.next_int_below(n).unwrap_or(0))
     }
 
@@ -207,7 +258,13 @@ impl Env<'_> {
         if arrow == Arrow::Execution {
             return body(p, m);
         }
-        m.queue.begin(&m.graph, &self.compiled.pattern, &self.compiled.plan, arrow, nodes);
+        m.queue.begin(
+            &m.graph,
+            &self.compiled.pattern,
+            &self.compiled.plan,
+            arrow,
+            nodes,
+        );
         match body(p, m) {
             Ok(flow) => {
                 m.queue.end(&mut m.graph);
@@ -241,7 +298,12 @@ impl MatchEnv<PatternCode> for Env<'_> {
         (self.compiled.binders[usize::from(slot)])(self.machine, node, field)
     }
 
-    fn field_equals(&mut self, node: NodeId, field: FieldId, value: &PatternCode) -> Result<bool, Trap> {
+    fn field_equals(
+        &mut self,
+        node: NodeId,
+        field: FieldId,
+        value: &PatternCode,
+    ) -> Result<bool, Trap> {
         match value {
             PatternCode::Equal(test) => test(self.program, self.machine, node, field),
             PatternCode::Condition(_) | PatternCode::Node(_) => Ok(false),

@@ -28,7 +28,8 @@ pub(super) enum Turn {
 pub(super) type Visit<'a> = &'a mut dyn FnMut(&Program, &mut Machine) -> Result<Turn, Trap>;
 
 /// Goes through a sequence.
-pub(super) type Iterate = Box<dyn Fn(&Program, &mut Machine, Visit<'_>) -> Result<Turn, Trap> + Send + Sync>;
+pub(super) type Iterate =
+    Box<dyn Fn(&Program, &mut Machine, Visit<'_>) -> Result<Turn, Trap> + Send + Sync>;
 
 impl Scope<'_> {
     /// The type of a sequence's elements.
@@ -59,30 +60,52 @@ impl Scope<'_> {
             },
             Sequence::List(list) => self.list(list, at),
             Sequence::Apply(n) => self.apply(n),
-            Sequence::Map { source, slot, body } => with_kind!(&body.ty, self.map(source, *slot, body, at)),
+            Sequence::Map { source, slot, body } => {
+                with_kind!(&body.ty, self.map(source, *slot, body, at))
+            }
             Sequence::One(value) => with_kind!(&value.ty, self.one(value, at)),
         }
     }
 
-    fn query(&self, pattern: &crate::graph::pattern::Pattern<Expr>, result: usize, at: Option<u32>) -> Iterate {
+    fn query(
+        &self,
+        pattern: &crate::graph::pattern::Pattern<Expr>,
+        result: usize,
+        at: Option<u32>,
+    ) -> Iterate {
         let compiled: CompiledPattern = self.pattern(pattern);
         Box::new(move |program, machine, visit| {
             let mut turn = Turn::Next;
-            let mut env = Env { program, machine, compiled: &compiled };
-            rewrite::search(&compiled.pattern, &compiled.plan, false, &mut env, &mut |env, nodes| {
-                if let Some(at) = at {
-                    Some(nodes[result]).store(&mut env.machine.stack, at);
-                }
-                turn = visit(env.program, env.machine)?;
-                Ok(if turn == Turn::Next { rewrite::Flow::Continue } else { rewrite::Flow::Stop })
-            })?;
+            let mut env = Env {
+                program,
+                machine,
+                compiled: &compiled,
+            };
+            rewrite::search(
+                &compiled.pattern,
+                &compiled.plan,
+                false,
+                &mut env,
+                &mut |env, nodes| {
+                    if let Some(at) = at {
+                        Some(nodes[result]).store(&mut env.machine.stack, at);
+                    }
+                    turn = visit(env.program, env.machine)?;
+                    Ok(if turn == Turn::Next {
+                        rewrite::Flow::Continue
+                    } else {
+                        rewrite::Flow::Stop
+                    })
+                },
+            )?;
             Ok(turn)
         })
     }
 
     fn range(&self, from: &Expr, until: &Expr, at: Option<u32>) -> Iterate {
         let is_long = from.ty == Type::Long;
-        let [from, until] = [from, until].map(|e| i64::from_code(super::convert::number(self.expr(e), &Type::Long)));
+        let [from, until] = [from, until]
+            .map(|e| i64::from_code(super::convert::number(self.expr(e), &Type::Long)));
         Box::new(move |p, m, visit| {
             let from = from.get(p, m)?;
             let until = until.get(p, m)?;
@@ -158,7 +181,13 @@ impl Scope<'_> {
         })
     }
 
-    fn map<T: Access>(&self, source: &Sequence, slot: Slot, body: &Expr, at: Option<u32>) -> Iterate {
+    fn map<T: Access>(
+        &self,
+        source: &Sequence,
+        slot: Slot,
+        body: &Expr,
+        at: Option<u32>,
+    ) -> Iterate {
         let source = self.sequence(source, Some(self.local(slot)));
         let body = self.source::<T>(body);
         Box::new(move |p, m, visit| {
@@ -186,7 +215,11 @@ impl Scope<'_> {
     /// A place for the elements of a sequence.
     pub(super) fn element_place(&self, ty: &Type) -> Local {
         let at = self.temporary(ty);
-        if crate::eval::stack::is_word(ty) { Local::Word(at) } else { Local::Value(at) }
+        if crate::eval::stack::is_word(ty) {
+            Local::Word(at)
+        } else {
+            Local::Value(at)
+        }
     }
 }
 

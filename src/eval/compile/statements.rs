@@ -34,10 +34,18 @@ impl Scope<'_> {
             StmtKind::Block(body) => self.block(body),
             StmtKind::If(condition, yes, no) => self.branch(condition, yes, no.as_deref()),
             StmtKind::Loop { .. } => self.counted_loop(s),
-            StmtKind::ForEach { label, slot, sequence, body } => {
-                self.for_each(*label, *slot, sequence, body, s.span)
-            }
-            StmtKind::Switch { value, cases, default, body } => self.switch(value, cases, *default, body),
+            StmtKind::ForEach {
+                label,
+                slot,
+                sequence,
+                body,
+            } => self.for_each(*label, *slot, sequence, body, s.span),
+            StmtKind::Switch {
+                value,
+                cases,
+                default,
+                body,
+            } => self.switch(value, cases, *default, body),
             StmtKind::Return(value) => self.return_value(value.as_ref()),
             StmtKind::Break(label) => {
                 let label = label.map_or(Label::Innermost, Label::Named);
@@ -55,7 +63,11 @@ impl Scope<'_> {
                 })
             }
             StmtKind::Throw(value) => self.throw(value, s.span),
-            StmtKind::Try { body, catches, finally } => self.try_catch(body, catches, finally),
+            StmtKind::Try {
+                body,
+                catches,
+                finally,
+            } => self.try_catch(body, catches, finally),
             StmtKind::Rule(rule) => self.rule(rule),
             StmtKind::SuperConstructor(new) => {
                 let fill = self.fill_node(new, s.span);
@@ -86,7 +98,10 @@ impl Scope<'_> {
                 Code::Float(s) => store(s, at),
                 Code::Double(s) => store(s, at),
                 // A null stored in a variable for nodes.
-                other => store(<Option<NodeId> as crate::eval::code::FromCode>::from_code(other), at),
+                other => store(
+                    <Option<NodeId> as crate::eval::code::FromCode>::from_code(other),
+                    at,
+                ),
             },
         }
     }
@@ -94,8 +109,20 @@ impl Scope<'_> {
     fn branch(&self, condition: &Expr, yes: &Stmt, no: Option<&Stmt>) -> Exec {
         let (condition, yes) = (self.boolean(condition), self.statement(yes));
         match no.map(|no| self.statement(no)) {
-            None => Box::new(move |p, m| if condition.get(p, m)? { yes(p, m) } else { Ok(Flow::Next) }),
-            Some(no) => Box::new(move |p, m| if condition.get(p, m)? { yes(p, m) } else { no(p, m) }),
+            None => Box::new(move |p, m| {
+                if condition.get(p, m)? {
+                    yes(p, m)
+                } else {
+                    Ok(Flow::Next)
+                }
+            }),
+            Some(no) => Box::new(move |p, m| {
+                if condition.get(p, m)? {
+                    yes(p, m)
+                } else {
+                    no(p, m)
+                }
+            }),
         }
     }
 
@@ -107,7 +134,9 @@ impl Scope<'_> {
                 Ok(Flow::Return)
             })
         }
-        let Some(value) = value else { return Box::new(|_, _| Ok(Flow::Return)) };
+        let Some(value) = value else {
+            return Box::new(|_, _| Ok(Flow::Return));
+        };
         match self.as_type(value, self.result) {
             Code::Void(code) => Box::new(move |p, m| code(p, m).map(|()| Flow::Return)),
             Code::Boolean(s) => leave(s),
@@ -120,9 +149,18 @@ impl Scope<'_> {
         }
     }
 
-    fn switch(&self, value: &Expr, cases: &[(Constant, usize)], default: Option<usize>, body: &[Stmt]) -> Exec {
+    fn switch(
+        &self,
+        value: &Expr,
+        cases: &[(Constant, usize)],
+        default: Option<usize>,
+        body: &[Stmt],
+    ) -> Exec {
         let value = self.value(value);
-        let cases: Vec<(Value, usize)> = cases.iter().map(|(c, start)| (case_value(c), *start)).collect();
+        let cases: Vec<(Value, usize)> = cases
+            .iter()
+            .map(|(c, start)| (case_value(c), *start))
+            .collect();
         let body: Vec<Exec> = body.iter().map(|s| self.statement(s)).collect();
         let default = default.unwrap_or(body.len());
         Box::new(move |p, m| {
@@ -131,7 +169,10 @@ impl Scope<'_> {
                 (Some(a), Some(b)) => a == b,
                 _ => case.equals(&value),
             };
-            let start = cases.iter().find(|(case, _)| is_it(case)).map_or(default, |(_, start)| *start);
+            let start = cases
+                .iter()
+                .find(|(case, _)| is_it(case))
+                .map_or(default, |(_, start)| *start);
             match run_all(body.get(start..).unwrap_or_default(), p, m)? {
                 Flow::Break(Label::Innermost) => Ok(Flow::Next),
                 flow => Ok(flow),
@@ -147,7 +188,12 @@ impl Scope<'_> {
         })
     }
 
-    fn try_catch(&self, body: &[Stmt], catches: &[(String, Slot, Vec<Stmt>)], finally: &[Stmt]) -> Exec {
+    fn try_catch(
+        &self,
+        body: &[Stmt],
+        catches: &[(String, Slot, Vec<Stmt>)],
+        finally: &[Stmt],
+    ) -> Exec {
         let body = self.block(body);
         let handlers: Vec<Handler> = catches
             .iter()
@@ -207,13 +253,22 @@ impl Handler {
         if matches!(self.class.as_str(), "Exception" | "Throwable") {
             return true;
         }
-        thrown.class().is_some_and(|class| class.lineage().map(ClassId::name).any(|name| name == self.class))
+        thrown.class().is_some_and(|class| {
+            class
+                .lineage()
+                .map(ClassId::name)
+                .any(|name| name == self.class)
+        })
     }
 }
 
 fn handle(handlers: &[Handler], trap: Trap, p: &Program, m: &mut Machine) -> Result<Flow, Trap> {
-    let Some(thrown) = trap.thrown().cloned() else { return Err(trap) };
-    let Some(handler) = handlers.iter().find(|h| h.catches(&thrown)) else { return Err(trap) };
+    let Some(thrown) = trap.thrown().cloned() else {
+        return Err(trap);
+    };
+    let Some(handler) = handlers.iter().find(|h| h.catches(&thrown)) else {
+        return Err(trap);
+    };
     if let Local::Value(at) = handler.variable {
         m.stack.set_value(at, thrown);
     }

@@ -15,8 +15,15 @@ pub(super) fn make_list(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Res
     Ok(new_object(class, Data::List(List::default())))
 }
 
-pub(super) fn make_list_copy(cx: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    let mut list = List { values: elements(cx, args, 0)?, ..List::default() };
+pub(super) fn make_list_copy(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let mut list = List {
+        values: elements(cx, args, 0)?,
+        ..List::default()
+    };
     pay(cx, &mut list)?;
     Ok(new_object(class, Data::List(list)))
 }
@@ -50,14 +57,24 @@ fn on_list<T: Default>(
 fn pay(cx: &Context<'_>, list: &mut List) -> Result<(), Trap> {
     let needed = ELEMENT_BYTES * list.values.len() as u64;
     if needed > list.charge.bytes() {
-        list.charge = cx.machine.charge(2 * needed).map_err(|trap| trap.at(cx.span))?;
+        list.charge = cx
+            .machine
+            .charge(2 * needed)
+            .map_err(|trap| trap.at(cx.span))?;
     }
     Ok(())
 }
 
 fn checked(cx: &Context<'_>, index: i32, n: usize) -> Result<usize, Trap> {
     let place = usize::try_from(index).ok().filter(|&i| i < n);
-    place.ok_or_else(|| out_of_bounds(ClassId::IndexOutOfBoundsException, i64::from(index), n, cx.span))
+    place.ok_or_else(|| {
+        out_of_bounds(
+            ClassId::IndexOutOfBoundsException,
+            i64::from(index),
+            n,
+            cx.span,
+        )
+    })
 }
 
 pub(super) fn size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -71,7 +88,9 @@ pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 
 pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let wanted = args.at(1);
-    Ok(Value::Boolean(elements(cx, args, 0)?.iter().any(|v| v.equals(wanted))))
+    Ok(Value::Boolean(
+        elements(cx, args, 0)?.iter().any(|v| v.equals(wanted)),
+    ))
 }
 
 pub(super) fn add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -111,7 +130,10 @@ pub(super) fn get(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
 pub(super) fn set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     on_list(cx, args, |list| {
         let place = checked(cx, args.int(1), list.values.len())?;
-        Ok(std::mem::replace(&mut list.values[place], args.at(2).clone()))
+        Ok(std::mem::replace(
+            &mut list.values[place],
+            args.at(2).clone(),
+        ))
     })
 }
 
@@ -139,7 +161,9 @@ pub(super) fn remove(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
 
 pub(super) fn index_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let found = index_of_equal(cx, args)?;
-    Ok(Value::Int(found.and_then(|i| i32::try_from(i).ok()).unwrap_or(-1)))
+    Ok(Value::Int(
+        found.and_then(|i| i32::try_from(i).ok()).unwrap_or(-1),
+    ))
 }
 
 pub(super) fn clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -165,26 +189,37 @@ pub(super) fn put(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
         let old = map.insert(args.at(1).clone(), args.at(2).clone());
         let needed = ENTRY_BYTES * map.len() as u64;
         if needed > map.charge.bytes() {
-            map.charge = cx.machine.charge(2 * needed).map_err(|trap| trap.at(cx.span))?;
+            map.charge = cx
+                .machine
+                .charge(2 * needed)
+                .map_err(|trap| trap.at(cx.span))?;
         }
         Ok(old.unwrap_or_default())
     })
 }
 
 pub(super) fn get_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| Ok(map.get(args.at(1)).cloned().unwrap_or_default()))
+    on_map(cx, args, |map| {
+        Ok(map.get(args.at(1)).cloned().unwrap_or_default())
+    })
 }
 
 pub(super) fn contains_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| Ok(Value::Boolean(map.get(args.at(1)).is_some())))
+    on_map(cx, args, |map| {
+        Ok(Value::Boolean(map.get(args.at(1)).is_some()))
+    })
 }
 
 pub(super) fn remove_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| Ok(map.remove(args.at(1)).unwrap_or_default()))
+    on_map(cx, args, |map| {
+        Ok(map.remove(args.at(1)).unwrap_or_default())
+    })
 }
 
 pub(super) fn map_size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| Ok(Value::Int(i32::try_from(map.len()).unwrap_or(i32::MAX))))
+    on_map(cx, args, |map| {
+        Ok(Value::Int(i32::try_from(map.len()).unwrap_or(i32::MAX)))
+    })
 }
 
 pub(super) fn map_is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -198,17 +233,24 @@ pub(super) fn map_clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, T
 }
 
 pub(super) fn key_set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let keys = on_map(cx, args, |map| Ok(map.entries().map(|(key, _)| key.clone()).collect()))?;
+    let keys = on_map(cx, args, |map| {
+        Ok(map.entries().map(|(key, _)| key.clone()).collect())
+    })?;
     list_of(cx, keys)
 }
 
 pub(super) fn map_values(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let values = on_map(cx, args, |map| Ok(map.entries().map(|(_, value)| value.clone()).collect()))?;
+    let values = on_map(cx, args, |map| {
+        Ok(map.entries().map(|(_, value)| value.clone()).collect())
+    })?;
     list_of(cx, values)
 }
 
 fn list_of(cx: &Context<'_>, values: Vec<Value>) -> Result<Value, Trap> {
-    let mut list = List { values, ..List::default() };
+    let mut list = List {
+        values,
+        ..List::default()
+    };
     pay(cx, &mut list)?;
     Ok(new_object(ClassId::ArrayList, Data::List(list)))
 }

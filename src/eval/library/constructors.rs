@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use super::{Arguments, Context, Maker, collections, light, new_object, random, shaders, strings, vectors};
+use super::{
+    Arguments, Context, Maker, collections, light, new_object, random, shaders, strings, vectors,
+};
 use crate::eval::object::Data;
 use crate::eval::text::Text;
 use crate::eval::trap::Trap;

@@ -3,13 +3,13 @@
 //! `libm`'s is off by one unit in the last place now and then (`exp(1)` is not `Math.E`). Here the number is carried as an
 //! unevaluated sum of two doubles: exp(x) = 2^k · exp(r/64)^64 with |r| ≤ ln 2 / 2 and a Taylor series for the inner one.
 //!
-//! Source: [Dekker1971] for sums and products in twice the precision.
+//! Source: [Dekker1971](crate::references#dekker1971) for sums and products in twice the precision.
 
 use std::f64::consts::LOG2_E;
 
 /// ln 2 in two parts; the first has zeros at its end, so that its multiples up to 2^11 are exact.
 const LN2_HIGH: f64 = f64::from_bits(0x3fe6_2e42_fee0_0000);
-const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+const LN2_LOW: f64 = f64::from_bits(0x3dea_39ef_3579_3c76);
 /// Beyond this, results are infinite, subnormal or zero.
 const GREATEST: f64 = 700.0;
 /// Halvings of the argument before the series, and terms of the series.
@@ -59,7 +59,10 @@ impl Double {
     fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
-        Self { high, low: (a - (high - part)) + (b - part) }
+        Self {
+            high,
+            low: (a - (high - part)) + (b - part),
+        }
     }
 
     /// `a · b` without error.
@@ -70,7 +73,10 @@ impl Double {
             (high, x - high)
         };
         let ((a1, a2), (b1, b2), high) = (split(a), split(b), a * b);
-        Self { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
+        Self {
+            high,
+            low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2),
+        }
     }
 
     fn plus(self, other: Self) -> Self {
@@ -80,18 +86,27 @@ impl Double {
 
     fn multiplied(self, other: Self) -> Self {
         let product = Self::product(self.high, other.high);
-        Self::sum(product.high, product.low + self.high * other.low + self.low * other.high)
+        Self::sum(
+            product.high,
+            product.low + self.high * other.low + self.low * other.high,
+        )
     }
 
     /// Times a power of two.
     fn times(self, factor: f64) -> Self {
-        Self { high: self.high * factor, low: self.low * factor }
+        Self {
+            high: self.high * factor,
+            low: self.low * factor,
+        }
     }
 
     fn divided(self, n: f64) -> Self {
         let quotient = self.high / n;
         let rest = Self::product(quotient, n);
-        Self::sum(quotient, ((self.high - rest.high) - rest.low + self.low) / n)
+        Self::sum(
+            quotient,
+            ((self.high - rest.high) - rest.low + self.low) / n,
+        )
     }
 }
 

@@ -16,14 +16,18 @@ pub(super) fn format(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
     let mut rest = pattern;
     while let Some(at) = rest.find('%') {
         out.push_str(&rest[..at]);
-        let Some((field, behind)) = Field::parse(&rest[at + 1..]) else { return Err(bad_pattern(cx, pattern)) };
+        let Some((field, behind)) = Field::parse(&rest[at + 1..]) else {
+            return Err(bad_pattern(cx, pattern));
+        };
         rest = behind;
         match field.conversion {
             'n' => out.push('\n'),
             '%' => out.push('%'),
             _ => {
                 let value = values.next().ok_or_else(|| bad_pattern(cx, pattern))?;
-                let text = field.text_of(cx, value).ok_or_else(|| bad_pattern(cx, pattern))?;
+                let text = field
+                    .text_of(cx, value)
+                    .ok_or_else(|| bad_pattern(cx, pattern))?;
                 out.push_str(&field.padded(text));
             }
         }
@@ -33,7 +37,10 @@ pub(super) fn format(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
 }
 
 fn bad_pattern(cx: &Context<'_>, pattern: &str) -> Trap {
-    cx.exception(ClassId::IllegalArgumentException, format!("the format \"{pattern}\" does not fit its values"))
+    cx.exception(
+        ClassId::IllegalArgumentException,
+        format!("the format \"{pattern}\" does not fit its values"),
+    )
 }
 
 /// One `%…` of a pattern.
@@ -51,31 +58,58 @@ impl<'p> Field<'p> {
         let flags = &text[..text.len() - after_flags.len()];
         let after_width = after_flags.trim_start_matches(|c: char| c.is_ascii_digit());
         let width = &after_flags[..after_flags.len() - after_width.len()];
-        let width = if width.is_empty() { 0 } else { width.parse().ok().filter(|&w| w <= MAX_WIDTH)? };
+        let width = if width.is_empty() {
+            0
+        } else {
+            width.parse().ok().filter(|&w| w <= MAX_WIDTH)?
+        };
         let (precision, rest) = match after_width.strip_prefix('.') {
             None => (None, after_width),
             Some(digits) => {
                 let rest = digits.trim_start_matches(|c: char| c.is_ascii_digit());
-                let precision = digits[..digits.len() - rest.len()].parse().ok().filter(|&p| p <= MAX_WIDTH)?;
+                let precision = digits[..digits.len() - rest.len()]
+                    .parse()
+                    .ok()
+                    .filter(|&p| p <= MAX_WIDTH)?;
                 (Some(precision), rest)
             }
         };
         let conversion = rest.chars().next()?;
-        Some((Self { flags, width, precision, conversion }, &rest[conversion.len_utf8()..]))
+        Some((
+            Self {
+                flags,
+                width,
+                precision,
+                conversion,
+            },
+            &rest[conversion.len_utf8()..],
+        ))
     }
 
     fn text_of(&self, cx: &Context<'_>, value: &Value) -> Option<String> {
         Some(match self.conversion {
             'd' | 'i' => self.signed(value.as_long().filter(|_| !is_floating(value))?.to_string()),
-            'f' => self.signed(format!("{:.*}", self.precision.unwrap_or(6), value.as_double().filter(|_| is_floating(value))?)),
+            'f' => self.signed(format!(
+                "{:.*}",
+                self.precision.unwrap_or(6),
+                value.as_double().filter(|_| is_floating(value))?
+            )),
             'e' | 'E' => scientific(value.as_double()?, self.precision.unwrap_or(6)),
-            'g' => self.signed(format!("{:.*}", self.precision.unwrap_or(6), value.as_double()?)),
+            'g' => self.signed(format!(
+                "{:.*}",
+                self.precision.unwrap_or(6),
+                value.as_double()?
+            )),
             'x' => format!("{:x}", value.as_int()?),
             'X' => format!("{:X}", value.as_int()?),
             'c' | 'b' | 's' | 'S' => {
                 let mut text = String::new();
                 cx.machine.append_text(value, &mut text);
-                let text = if self.conversion == 'S' { text.to_uppercase() } else { text };
+                let text = if self.conversion == 'S' {
+                    text.to_uppercase()
+                } else {
+                    text
+                };
                 match self.precision {
                     Some(n) => text.chars().take(n).collect(),
                     None => text,
@@ -86,8 +120,14 @@ impl<'p> Field<'p> {
     }
 
     fn signed(&self, text: String) -> String {
-        let text = if self.flags.contains(',') { grouped(&text) } else { text };
-        let plus = ["+", " "].into_iter().find(|flag| self.flags.contains(flag));
+        let text = if self.flags.contains(',') {
+            grouped(&text)
+        } else {
+            text
+        };
+        let plus = ["+", " "]
+            .into_iter()
+            .find(|flag| self.flags.contains(flag));
         match plus {
             Some(plus) if !text.starts_with('-') => format!("{plus}{text}"),
             _ => text,
@@ -145,7 +185,10 @@ mod tests {
     #[test]
     fn fields_are_read_whole() {
         let (field, rest) = Field::parse("-08.3f m").unwrap();
-        assert_eq!((field.flags, field.width, field.precision, field.conversion), ("-0", 8, Some(3), 'f'));
+        assert_eq!(
+            (field.flags, field.width, field.precision, field.conversion),
+            ("-0", 8, Some(3), 'f')
+        );
         assert_eq!(rest, " m");
         assert!(Field::parse("").is_none());
         assert!(Field::parse("99999999999d").is_none());

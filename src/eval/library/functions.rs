@@ -1,6 +1,9 @@
 //! Behaviour of every function.
 
-use super::Behaviour::{self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2, Native};
+use super::Behaviour::{
+    self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2,
+    Native,
+};
 use super::exponential::exp;
 use super::{format, numbers, places, random, strings, system};
 use crate::library::FunctionId as F;
@@ -88,7 +91,9 @@ pub fn function(id: F) -> Behaviour {
         F::ParseFloat | F::FloatValueOfText => Native(numbers::parse_float),
         F::ParseDouble | F::DoubleValueOfText => Native(numbers::parse_double),
         F::ParseBoolean => Native(numbers::parse_boolean),
-        F::IntegerValueOf | F::LongValueOf | F::FloatValueOf | F::DoubleValueOf => Native(numbers::same),
+        F::IntegerValueOf | F::LongValueOf | F::FloatValueOf | F::DoubleValueOf => {
+            Native(numbers::same)
+        }
         F::IntegerToHexString => Native(numbers::to_hex),
         F::IntegerToBinaryString => Native(numbers::to_binary),
         F::FloatIsNaN | F::DoubleIsNaN => Native(numbers::is_nan),
@@ -104,7 +109,9 @@ pub fn function(id: F) -> Behaviour {
         | F::BooleanToString
         | F::CharacterToString
         | F::StringValueOf => Native(strings::value_of),
-        F::StringFormat1 | F::StringFormat2 | F::StringFormat3 | F::StringFormat4 => Native(format::format),
+        F::StringFormat1 | F::StringFormat2 | F::StringFormat3 | F::StringFormat4 => {
+            Native(format::format)
+        }
         F::CurrentTimeMillis | F::NanoTime => Native(system::time),
     }
 }

@@ -18,13 +18,32 @@ pub(super) fn make_lamp(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Res
     Ok(new_object(class, Data::Light(Light::new(LAMP_POWER))))
 }
 
-pub(super) fn make_distant(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
+pub(super) fn make_distant(
+    _: &mut Context<'_>,
+    class: ClassId,
+    _: &[Value],
+) -> Result<Value, Trap> {
     Ok(new_object(class, Data::Light(Light::new(POWER_DENSITY))))
 }
 
-pub(super) fn make_model(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    let (rays, depth) = if args.is_empty() { (RAYS, REFLECTIONS) } else { (args.int(0), args.int(1)) };
-    Ok(new_object(class, Data::LightModel(LightModel { rays, depth, seed: 0 })))
+pub(super) fn make_model(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let (rays, depth) = if args.is_empty() {
+        (RAYS, REFLECTIONS)
+    } else {
+        (args.int(0), args.int(1))
+    };
+    Ok(new_object(
+        class,
+        Data::LightModel(LightModel {
+            rays,
+            depth,
+            seed: 0,
+        }),
+    ))
 }
 
 fn set(cx: &Context<'_>, args: &[Value], change: impl FnOnce(&mut Light)) -> Result<Value, Trap> {
@@ -35,7 +54,9 @@ fn set(cx: &Context<'_>, args: &[Value], change: impl FnOnce(&mut Light)) -> Res
 }
 
 pub(super) fn set_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    set(cx, args, |light| light.color = [1, 2, 3].map(|i| args.float(i)))
+    set(cx, args, |light| {
+        light.color = [1, 2, 3].map(|i| args.float(i));
+    })
 }
 
 pub(super) fn set_color_map(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -62,7 +83,11 @@ pub(super) fn set_exponent(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
     set(cx, args, |light| light.exponent = args.float(1))
 }
 
-fn set_model(cx: &Context<'_>, args: &[Value], change: impl FnOnce(&mut LightModel)) -> Result<Value, Trap> {
+fn set_model(
+    cx: &Context<'_>,
+    args: &[Value],
+    change: impl FnOnce(&mut LightModel),
+) -> Result<Value, Trap> {
     if let Data::LightModel(model) = &mut *cx.object(args, 0)?.lock() {
         change(model);
     }

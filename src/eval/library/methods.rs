@@ -1,7 +1,10 @@
 //! Behaviour of every method.
 
 use super::Behaviour::{self, Native};
-use super::{Arguments, Context, collections, getter, light, numbers, random, setter, shaders, strings, system, vectors};
+use super::{
+    Arguments, Context, collections, getter, light, numbers, random, setter, shaders, strings,
+    system, vectors,
+};
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
 use crate::eval::value::Value;
@@ -98,7 +101,9 @@ pub fn method(id: M) -> Behaviour {
         M::LightModelSetSeed => light::set_seed,
         M::LightModelSetRayCount => light::set_ray_count,
         M::LightModelSetDepth => light::set_depth,
-        M::LightModelCompute | M::LightModelAbsorbedPower | M::LightModelAbsorbedPower3d => light::unsupported,
+        M::LightModelCompute | M::LightModelAbsorbedPower | M::LightModelAbsorbedPower3d => {
+            light::unsupported
+        }
         M::RandomSetSeed => random::own_set_seed,
         M::RandomNextInt => random::own_int,
         M::RandomNextIntBelow => random::own_int_below,

@@ -55,7 +55,10 @@ pub type Setter = fn(&mut Data, &Value);
 
 /// What a function or method does.
 #[derive(Clone, Copy)]
-#[allow(missing_docs, reason = "the names are those of the types of arguments and result")]
+#[allow(
+    missing_docs,
+    reason = "the names are those of the types of arguments and result"
+)]
 pub enum Behaviour {
     Int1(fn(i32) -> i32),
     Int2(fn(i32, i32) -> i32),
@@ -133,7 +136,9 @@ impl Arguments for [Value] {
 impl Context<'_> {
     /// The library object at `index`.
     fn object<'v>(&self, args: &'v [Value], index: usize) -> Result<&'v Arc<Object>, Trap> {
-        args.at(index).as_object().ok_or_else(|| Trap::null("use an object", self.span))
+        args.at(index)
+            .as_object()
+            .ok_or_else(|| Trap::null("use an object", self.span))
     }
 
     /// The node at `index`.
@@ -146,7 +151,9 @@ impl Context<'_> {
 
     /// A new text.
     fn new_text(&self, text: impl Into<String>) -> Result<Value, Trap> {
-        self.machine.new_text(text.into()).map_err(|trap| trap.at(self.span))
+        self.machine
+            .new_text(text.into())
+            .map_err(|trap| trap.at(self.span))
     }
 
     fn exception(&self, class: ClassId, message: impl Into<Box<str>>) -> Trap {

@@ -12,7 +12,11 @@ use crate::library::ClassId;
 use crate::turtle::{TurtleState, reading};
 
 /// The turtle with which the node at `index` is drawn.
-fn state(cx: &mut Context<'_>, args: &[Value], index: usize) -> Result<(NodeId, TurtleState), Trap> {
+fn state(
+    cx: &mut Context<'_>,
+    args: &[Value],
+    index: usize,
+) -> Result<(NodeId, TurtleState), Trap> {
     let node = cx.node(args, index)?;
     let machine = &mut *cx.machine;
     match machine.poses.at(&machine.graph, node) {
@@ -25,7 +29,10 @@ fn state(cx: &mut Context<'_>, args: &[Value], index: usize) -> Result<(NodeId, 
 fn state_after(cx: &mut Context<'_>, args: &[Value]) -> Result<TurtleState, Trap> {
     let node = cx.node(args, 0)?;
     let machine = &mut *cx.machine;
-    machine.poses.after(&machine.graph, node).map_err(|error| machine.graph_trap(&error, node, cx.span))
+    machine
+        .poses
+        .after(&machine.graph, node)
+        .map_err(|error| machine.graph_trap(&error, node, cx.span))
 }
 
 fn point(position: DVec3) -> Value {
@@ -73,7 +80,9 @@ pub(super) fn distance_of_points(cx: &mut Context<'_>, args: &[Value]) -> Result
 pub(super) fn angle(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let before = state(cx, args, 0)?.1.head();
     let after = state_after(cx, args)?.head();
-    Ok(Value::Double(libm::atan2(before.cross(after).length(), before.dot(after)).to_degrees()))
+    Ok(Value::Double(
+        libm::atan2(before.cross(after).length(), before.dot(after)).to_degrees(),
+    ))
 }
 
 pub(super) fn radius(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -89,7 +98,9 @@ pub(super) fn radius(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
 
 pub(super) fn color_index(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (node, state) = state(cx, args, 0)?;
-    Ok(Value::Int(reading::shoot_color(&cx.machine.graph, node, &state).unwrap_or(0)))
+    Ok(Value::Int(
+        reading::shoot_color(&cx.machine.graph, node, &state).unwrap_or(0),
+    ))
 }
 
 /// The node's own shader, else that of the colour with which the turtle draws it, else half gray.
@@ -102,12 +113,16 @@ pub(super) fn shader(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
         .and_then(|ty| graph.types().field(ty, "shader"))
         .and_then(|field| graph.get_object(node, field).ok())
         .filter(|value| value.as_object().is_some());
-    Ok(own.unwrap_or_else(|| match reading::shoot_color(graph, node, &state) {
-        Some(index) => shaders::opaque(ega(index)),
-        None => shaders::half_gray(),
-    }))
+    Ok(
+        own.unwrap_or_else(|| match reading::shoot_color(graph, node, &state) {
+            Some(index) => shaders::opaque(ega(index)),
+            None => shaders::half_gray(),
+        }),
+    )
 }
 
 pub(super) fn order(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Int(i32::try_from(state(cx, args, 0)?.1.order).unwrap_or(i32::MAX)))
+    Ok(Value::Int(
+        i32::try_from(state(cx, args, 0)?.1.order).unwrap_or(i32::MAX),
+    ))
 }

@@ -13,7 +13,9 @@ use crate::math::functions::exp;
 /// Uniform between two floats, computed in `float`.
 pub(super) fn random(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (low, high) = (args.float(0), args.float(1));
-    Ok(Value::Float(cx.machine.random.next_float() * (high - low) + low))
+    Ok(Value::Float(
+        cx.machine.random.next_float() * (high - low) + low,
+    ))
 }
 
 /// Uniform among the integers from one to another, both included.
@@ -46,18 +48,24 @@ pub(super) fn lognormal(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, T
     let ratio = deviation / mean;
     let squared = ratio * ratio;
     let deviate = cx.machine.random.next_gaussian();
-    Ok(Value::Double(mean / (1.0 + squared).sqrt() * exp(libm::log1p(squared).sqrt() * deviate)))
+    Ok(Value::Double(
+        mean / (1.0 + squared).sqrt() * exp(libm::log1p(squared).sqrt() * deviate),
+    ))
 }
 
 /// True with a given probability; certainty draws no number, impossibility draws one.
 pub(super) fn probability(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let p = args.float(0);
-    Ok(Value::Boolean(p >= 1.0 || cx.machine.random.next_float() < p))
+    Ok(Value::Boolean(
+        p >= 1.0 || cx.machine.random.next_float() < p,
+    ))
 }
 
 /// An index, drawn with the probabilities in an array; the last index takes what is missing to 1.
 pub(super) fn distribution(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let Some(array) = args.at(0).as_array() else { return Err(Trap::null("draw from an array", cx.span)) };
+    let Some(array) = args.at(0).as_array() else {
+        return Err(Trap::null("draw from an array", cx.span));
+    };
     let mut rest = cx.machine.random.next_float();
     let last = array.len().saturating_sub(1);
     for i in 0..last {
@@ -81,11 +89,21 @@ pub(super) fn uniform_double(cx: &mut Context<'_>, _: &[Value]) -> Result<Value,
 /// `new Random()`: Java would take the clock; runs must repeat, so the model's generator gives the seed.
 pub(super) fn make(cx: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
     let seed = cx.machine.random.next_long();
-    Ok(new_object(class, Data::Random(Box::new(JavaRandom::new(seed)))))
+    Ok(new_object(
+        class,
+        Data::Random(Box::new(JavaRandom::new(seed))),
+    ))
 }
 
-pub(super) fn make_seeded(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Random(Box::new(JavaRandom::new(args.long(0))))))
+pub(super) fn make_seeded(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    Ok(new_object(
+        class,
+        Data::Random(Box::new(JavaRandom::new(args.long(0)))),
+    ))
 }
 
 /// Draws from the generator that is the receiver.
@@ -96,7 +114,11 @@ fn draw<T>(object: &Arc<Object>, f: impl FnOnce(&mut JavaRandom) -> T) -> Option
     }
 }
 
-fn drawn(cx: &Context<'_>, args: &[Value], f: impl FnOnce(&mut JavaRandom) -> Value) -> Result<Value, Trap> {
+fn drawn(
+    cx: &Context<'_>,
+    args: &[Value],
+    f: impl FnOnce(&mut JavaRandom) -> Value,
+) -> Result<Value, Trap> {
     Ok(draw(cx.object(args, 0)?, f).unwrap_or_default())
 }
 

@@ -23,18 +23,39 @@ pub(super) fn make_gray(_: &mut Context<'_>, _: ClassId, _: &[Value]) -> Result<
 }
 
 pub(super) fn make_rgb(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Shader([args.float(0), args.float(1), args.float(2), 1.0])))
+    Ok(new_object(
+        class,
+        Data::Shader([args.float(0), args.float(1), args.float(2), 1.0]),
+    ))
 }
 
-pub(super) fn make_rgba(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Shader([0, 1, 2, 3].map(|i| args.float(i)))))
+pub(super) fn make_rgba(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    Ok(new_object(
+        class,
+        Data::Shader([0, 1, 2, 3].map(|i| args.float(i))),
+    ))
 }
 
-pub(super) fn make_color(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Color([0, 1, 2].map(|i| args.double(i)))))
+pub(super) fn make_color(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    Ok(new_object(
+        class,
+        Data::Color([0, 1, 2].map(|i| args.double(i))),
+    ))
 }
 
-pub(super) fn make_graytone(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
+pub(super) fn make_graytone(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
     Ok(new_object(class, Data::Color([args.double(0); 3])))
 }
 
@@ -103,7 +124,11 @@ pub(super) fn average_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Valu
 }
 
 /// Sets one channel of a `Phong` shader to the map in the second argument.
-fn set_channel(cx: &Context<'_>, args: &[Value], channel: fn(&mut Phong) -> &mut [f64; 3]) -> Result<Value, Trap> {
+fn set_channel(
+    cx: &Context<'_>,
+    args: &[Value],
+    channel: fn(&mut Phong) -> &mut [f64; 3],
+) -> Result<Value, Trap> {
     let color = match &*cx.object(args, 1)?.lock() {
         Data::Color(c) => *c,
         _ => return Ok(Value::Null),
@@ -118,7 +143,10 @@ pub(super) fn set_diffuse(cx: &mut Context<'_>, args: &[Value]) -> Result<Value,
     set_channel(cx, args, |p| &mut p.diffuse)
 }
 
-pub(super) fn set_diffuse_transparency(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+pub(super) fn set_diffuse_transparency(
+    cx: &mut Context<'_>,
+    args: &[Value],
+) -> Result<Value, Trap> {
     set_channel(cx, args, |p| &mut p.diffuse_transparency)
 }
 

@@ -15,12 +15,17 @@ use std::sync::atomic::AtomicU16;
 
 /// The receiver.
 fn receiver<'v>(cx: &Context<'_>, args: &'v [Value]) -> Result<&'v Text, Trap> {
-    args.at(0).as_text().ok_or_else(|| Trap::null("use a text", cx.span))
+    args.at(0)
+        .as_text()
+        .ok_or_else(|| Trap::null("use a text", cx.span))
 }
 
 /// The first argument behind the receiver, which must not be null.
 fn other<'v>(cx: &Context<'_>, args: &'v [Value]) -> Result<&'v str, Trap> {
-    args.at(1).as_text().map(Text::as_str).ok_or_else(|| Trap::null("use a text", cx.span))
+    args.at(1)
+        .as_text()
+        .map(Text::as_str)
+        .ok_or_else(|| Trap::null("use a text", cx.span))
 }
 
 fn place(found: Option<usize>) -> Value {
@@ -45,14 +50,17 @@ pub(super) fn value_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 }
 
 pub(super) fn length(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Int(i32::try_from(receiver(cx, args)?.len()).unwrap_or(i32::MAX)))
+    Ok(Value::Int(
+        i32::try_from(receiver(cx, args)?.len()).unwrap_or(i32::MAX),
+    ))
 }
 
 pub(super) fn char_at(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (text, index) = (receiver(cx, args)?, args.int(1));
     let unit = usize::try_from(index).ok().and_then(|i| text.unit(i));
     let class = ClassId::StringIndexOutOfBoundsException;
-    unit.map(Value::Char).ok_or_else(|| out_of_bounds(class, i64::from(index), text.len(), cx.span))
+    unit.map(Value::Char)
+        .ok_or_else(|| out_of_bounds(class, i64::from(index), text.len(), cx.span))
 }
 
 pub(super) fn substring(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -66,7 +74,10 @@ pub(super) fn substring_to(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
 
 fn slice(cx: &Context<'_>, args: &[Value], begin: i32, end: i32) -> Result<Value, Trap> {
     let text = receiver(cx, args)?;
-    let part = usize::try_from(begin).ok().zip(usize::try_from(end).ok()).and_then(|(a, b)| text.slice(a, b));
+    let part = usize::try_from(begin)
+        .ok()
+        .zip(usize::try_from(end).ok())
+        .and_then(|(a, b)| text.slice(a, b));
     match part {
         Some(part) => cx.new_text(part),
         None => {
@@ -96,7 +107,10 @@ pub(super) fn last_index_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Valu
 
 pub(super) fn equals_ignore_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let text = receiver(cx, args)?.as_str();
-    let is_equal = args.at(1).as_text().is_some_and(|t| t.as_str().to_lowercase() == text.to_lowercase());
+    let is_equal = args
+        .at(1)
+        .as_text()
+        .is_some_and(|t| t.as_str().to_lowercase() == text.to_lowercase());
     Ok(Value::Boolean(is_equal))
 }
 
@@ -104,9 +118,13 @@ pub(super) fn equals_ignore_case(cx: &mut Context<'_>, args: &[Value]) -> Result
 pub(super) fn compare_to(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (a, b) = (receiver(cx, args)?.as_str(), other(cx, args)?);
     let mut pairs = a.encode_utf16().zip(b.encode_utf16());
-    let difference = pairs.find(|(a, b)| a != b).map(|(a, b)| i32::from(a) - i32::from(b));
+    let difference = pairs
+        .find(|(a, b)| a != b)
+        .map(|(a, b)| i32::from(a) - i32::from(b));
     let length = |text: &str| i32::try_from(text.encode_utf16().count()).unwrap_or(i32::MAX);
-    Ok(Value::Int(difference.unwrap_or_else(|| length(a) - length(b))))
+    Ok(Value::Int(
+        difference.unwrap_or_else(|| length(a) - length(b)),
+    ))
 }
 
 pub(super) fn to_upper_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -123,28 +141,40 @@ pub(super) fn trim(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> 
 }
 
 pub(super) fn starts_with(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Boolean(receiver(cx, args)?.as_str().starts_with(other(cx, args)?)))
+    Ok(Value::Boolean(
+        receiver(cx, args)?.as_str().starts_with(other(cx, args)?),
+    ))
 }
 
 pub(super) fn ends_with(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Boolean(receiver(cx, args)?.as_str().ends_with(other(cx, args)?)))
+    Ok(Value::Boolean(
+        receiver(cx, args)?.as_str().ends_with(other(cx, args)?),
+    ))
 }
 
 pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Boolean(receiver(cx, args)?.as_str().contains(other(cx, args)?)))
+    Ok(Value::Boolean(
+        receiver(cx, args)?.as_str().contains(other(cx, args)?),
+    ))
 }
 
 pub(super) fn replace(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (text, from, to) = (receiver(cx, args)?.as_str(), other(cx, args)?, args.text(2));
     // Grows by this much at most; refuse before the text is made.
     let n_found = text.matches(from).count();
-    cx.machine.check_text(text.len().saturating_add(n_found.saturating_mul(to.len()))).map_err(|t| t.at(cx.span))?;
+    cx.machine
+        .check_text(text.len().saturating_add(n_found.saturating_mul(to.len())))
+        .map_err(|t| t.at(cx.span))?;
     cx.new_text(text.replace(from, to))
 }
 
 pub(super) fn replace_char(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let [from, to] = [1, 2].map(|i| char_of(args.int(i) as u16));
-    let text: String = receiver(cx, args)?.as_str().chars().map(|c| if c == from { to } else { c }).collect();
+    let text: String = receiver(cx, args)?
+        .as_str()
+        .chars()
+        .map(|c| if c == from { to } else { c })
+        .collect();
     cx.new_text(text)
 }
 
@@ -168,9 +198,18 @@ pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
     while parts.len() > 1 && parts.last().is_some_and(|part| part.is_empty()) {
         parts.pop();
     }
-    let charge = cx.machine.charge(64 * parts.len() as u64).map_err(|trap| trap.at(cx.span))?;
-    let elements: Vec<Mutex<Value>> = parts.iter().map(|part| Mutex::new(Value::text(*part))).collect();
-    Ok(Value::Array(Arc::new(Array::new(Elements::Reference(elements.into()), charge))))
+    let charge = cx
+        .machine
+        .charge(64 * parts.len() as u64)
+        .map_err(|trap| trap.at(cx.span))?;
+    let elements: Vec<Mutex<Value>> = parts
+        .iter()
+        .map(|part| Mutex::new(Value::text(*part)))
+        .collect();
+    Ok(Value::Array(Arc::new(Array::new(
+        Elements::Reference(elements.into()),
+        charge,
+    ))))
 }
 
 /// A text that begins with blanks has an empty first part, as in Java.
@@ -185,9 +224,15 @@ pub(super) fn concat(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
 
 pub(super) fn to_char_array(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let text = receiver(cx, args)?;
-    let charge = cx.machine.charge(2 * text.len() as u64).map_err(|trap| trap.at(cx.span))?;
+    let charge = cx
+        .machine
+        .charge(2 * text.len() as u64)
+        .map_err(|trap| trap.at(cx.span))?;
     let units = text.as_str().encode_utf16().map(AtomicU16::new).collect();
-    Ok(Value::Array(Arc::new(Array::new(Elements::Char(units), charge))))
+    Ok(Value::Array(Arc::new(Array::new(
+        Elements::Char(units),
+        charge,
+    ))))
 }
 
 pub(super) fn is_digit(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -202,9 +247,20 @@ pub(super) fn is_whitespace(_: &mut Context<'_>, args: &[Value]) -> Result<Value
     Ok(Value::Boolean(char_of(args.int(0) as u16).is_whitespace()))
 }
 
-pub(super) fn make_buffer(cx: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    let text = if args.is_empty() { "" } else { other(cx, &[Value::Null, args.at(0).clone()]).map(|_| args.text(0))? };
-    Ok(new_object(class, Data::Buffer(text.to_owned(), Charge::none())))
+pub(super) fn make_buffer(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let text = if args.is_empty() {
+        ""
+    } else {
+        other(cx, &[Value::Null, args.at(0).clone()]).map(|_| args.text(0))?
+    };
+    Ok(new_object(
+        class,
+        Data::Buffer(text.to_owned(), Charge::none()),
+    ))
 }
 
 pub(super) fn append(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -212,10 +268,15 @@ pub(super) fn append(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
     cx.machine.append_text(args.at(1), &mut added);
     if let Data::Buffer(text, charge) = &mut *cx.object(args, 0)?.lock() {
         let n_bytes = text.len() + added.len();
-        cx.machine.check_text(n_bytes).map_err(|trap| trap.at(cx.span))?;
+        cx.machine
+            .check_text(n_bytes)
+            .map_err(|trap| trap.at(cx.span))?;
         // The share grows in doublings, as the buffer does.
         if n_bytes as u64 > charge.bytes() {
-            *charge = cx.machine.charge(2 * n_bytes as u64).map_err(|trap| trap.at(cx.span))?;
+            *charge = cx
+                .machine
+                .charge(2 * n_bytes as u64)
+                .map_err(|trap| trap.at(cx.span))?;
         }
         text.push_str(&added);
     }

@@ -36,7 +36,9 @@ pub(super) fn derive(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
 
 /// Starts the model again from an empty graph.
 pub(super) fn reset(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
-    cx.machine.clear(cx.program).map_err(|trap| trap.at(cx.span))?;
+    cx.machine
+        .clear(cx.program)
+        .map_err(|trap| trap.at(cx.span))?;
     cx.program.run_init(cx.machine, cx.span)?;
     Ok(Value::Null)
 }
@@ -52,5 +54,7 @@ pub(super) fn derivation_mode(cx: &mut Context<'_>, _: &[Value]) -> Result<Value
 
 /// Growth knows no clock, so that a run repeats: time is the number of the step, in milliseconds.
 pub(super) fn time(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Long(i64::try_from(cx.machine.step).unwrap_or(i64::MAX)))
+    Ok(Value::Long(
+        i64::try_from(cx.machine.step).unwrap_or(i64::MAX),
+    ))
 }

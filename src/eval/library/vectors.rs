@@ -16,13 +16,21 @@ pub(super) fn make(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Resul
     Ok(new_object(class, Data::Tuple(triple(args, 0))))
 }
 
-pub(super) fn make_copy(cx: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {
+pub(super) fn make_copy(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
     Ok(new_object(class, Data::Tuple(tuple(cx, args, 0)?)))
 }
 
 /// Three numbers from `index` on.
 fn triple(args: &[Value], index: usize) -> DVec3 {
-    DVec3::new(args.double(index), args.double(index + 1), args.double(index + 2))
+    DVec3::new(
+        args.double(index),
+        args.double(index + 1),
+        args.double(index + 2),
+    )
 }
 
 fn tuple(cx: &Context<'_>, args: &[Value], index: usize) -> Result<DVec3, Trap> {
@@ -107,7 +115,11 @@ pub(super) fn scale_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 }
 
 pub(super) fn scale_add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    become_(cx, args, tuple(cx, args, 2)? * args.double(1) + tuple(cx, args, 3)?)
+    become_(
+        cx,
+        args,
+        tuple(cx, args, 2)? * args.double(1) + tuple(cx, args, 3)?,
+    )
 }
 
 pub(super) fn negate(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -149,15 +161,21 @@ pub(super) fn dot(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
 pub(super) fn angle(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (a, b) = (tuple(cx, args, 0)?, tuple(cx, args, 1)?);
     let cosine = a.dot(b) / (a.length() * b.length());
-    Ok(Value::Double(crate::math::functions::acos(cosine.clamp(-1.0, 1.0))))
+    Ok(Value::Double(crate::math::functions::acos(
+        cosine.clamp(-1.0, 1.0),
+    )))
 }
 
 pub(super) fn distance(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Double(tuple(cx, args, 0)?.distance(tuple(cx, args, 1)?)))
+    Ok(Value::Double(
+        tuple(cx, args, 0)?.distance(tuple(cx, args, 1)?),
+    ))
 }
 
 pub(super) fn distance_squared(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    Ok(Value::Double(tuple(cx, args, 0)?.distance_squared(tuple(cx, args, 1)?)))
+    Ok(Value::Double(
+        tuple(cx, args, 0)?.distance_squared(tuple(cx, args, 1)?),
+    ))
 }
 
 fn vector(v: DVec3) -> Value {
