@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! Source (graph + bodies of modules) → interpret → Interpretation { scene, organs, summary, warnings }
+//!   grown       a `Growth` as a source
 //!   source      what is asked of a grown model
 //!   walk        the turtle's way through the graph, without recursion
 //!   body        instantiation bodies and their prototypes
@@ -20,6 +21,7 @@ mod appearance;
 mod body;
 mod canvas;
 mod failure;
+mod grown;
 mod instance;
 mod lamps;
 mod materials;

@@ -1,0 +1,87 @@
+//! A [`Growth`] as a source of drawings: its graph, its bodies, and what its shaders and lamps are.
+
+use super::appearance::{Appearance, Lamp, LampKind, Surface};
+use super::failure::Failure;
+use super::source::{Body, Source};
+use crate::diag::Span;
+use crate::eval::object::Data;
+use crate::eval::{Purity, Value};
+use crate::graph::{Graph, NodeId, TypeId};
+use crate::growth::Growth;
+use crate::library::ClassId;
+use crate::rewrite::Instantiated;
+
+impl Source for Growth {
+    type Object = Value;
+
+    fn graph(&self) -> &Graph<Value> {
+        Self::graph(self)
+    }
+
+    fn body(&self, ty: TypeId) -> Option<Body> {
+        let purity = self.instantiation(ty)?;
+        Some(Body {
+            is_pure: purity == Purity::Pure,
+        })
+    }
+
+    fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Failure> {
+        Self::instantiate(self, node)
+    }
+
+    fn release(&mut self, made: Instantiated) {
+        self.free(made);
+    }
+
+    fn declared_at(&self, ty: TypeId) -> Option<Span> {
+        Self::declared_at(self, ty)
+    }
+}
+
+impl Appearance for Value {
+    fn surface(&self) -> Option<Surface> {
+        match &*self.as_object()?.lock() {
+            Data::Shader(rgba) => {
+                let [r, g, b, alpha] = rgba.map(f64::from);
+                Some(Surface {
+                    alpha,
+                    ..Surface::opaque([r, g, b])
+                })
+            }
+            Data::Phong(phong) => {
+                let [r, g, b] = phong.transparency;
+                Some(Surface {
+                    reflectance: phong.diffuse,
+                    transmittance: phong.diffuse_transparency,
+                    alpha: 1.0 - (r + g + b) / 3.0,
+                })
+            }
+            _ => None,
+        }
+    }
+
+    fn lamp(&self) -> Option<Lamp> {
+        let object = self.as_object()?;
+        let data = object.lock();
+        let Data::Light(light) = &*data else {
+            return None;
+        };
+        let kind = match object.class {
+            ClassId::DirectionalLight => LampKind::Directional,
+            ClassId::AreaLight => LampKind::Area {
+                exponent: f64::from(light.exponent),
+            },
+            ClassId::Sky => LampKind::Sky,
+            ClassId::SpotLight => LampKind::Spot {
+                inner: f64::from(light.inner_angle),
+                outer: f64::from(light.outer_angle),
+            },
+            _ => LampKind::Point,
+        };
+        Some(Lamp {
+            kind,
+            color: light.color.map(f64::from),
+            power: f64::from(light.power),
+        })
+    }
+}
