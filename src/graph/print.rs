@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 impl<O: Payload> Graph<O> {
     /// The graph as a bracketed string, as in the literature on L-systems: `F(1)[RU(30)A(2)]A(3)`.
     ///
-    /// Branches stand in `[ ]`. Where a node has several successors each stands in `( )`; what hangs by another edge
+    /// A blank keeps two names apart that would run together. Branches stand in `[ ]`. Where a node has several successors each stands in `( )`; what hangs by another edge
     /// stands in `{ }`. A node with several parents is written where it is first met, afterwards as its name and `'`.
     /// The root itself is left out. Parameters are those of the constructor.
     pub fn string_text(&self) -> String {
@@ -15,8 +15,12 @@ impl<O: Payload> Graph<O> {
         let mut open = vec![];
         self.walk(self.root(), |event| match event {
             Event::Node(node) if node == self.root() => {}
-            Event::Node(node) => self.write_node(node, &mut text),
+            Event::Node(node) => {
+                separate(&mut text);
+                self.write_node(node, &mut text);
+            }
             Event::Again(node) => {
+                separate(&mut text);
                 self.write_name(node, &mut text);
                 text.push('\'');
             }
@@ -223,6 +227,13 @@ impl Digest {
     }
 }
 
+/// A blank after a name without parameters, so that the next name does not run into it.
+fn separate(text: &mut String) {
+    if text.ends_with(|last: char| last.is_alphanumeric() || last == '_') {
+        text.push(' ');
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::testing::{V, graph, grow, type_named};
@@ -230,13 +241,13 @@ mod tests {
     #[test]
     fn strings_and_trees() {
         let mut graph = graph("S A(1) [B(2) C(3)] [D(9)] D(4)");
-        assert_eq!(graph.string_text(), "SA(1)[B(2)C(3)][D(9)]D(4)");
+        assert_eq!(graph.string_text(), "S A(1)[B(2)C(3)][D(9)]D(4)");
         assert_eq!(
             graph.tree_text(),
             "RGGRoot\nS\nA(1)\n+ B(2)\n  C(3)\n+ D(9)\nD(4)\n"
         );
         grow(&mut graph, "E(5)").expect("room");
-        assert_eq!(graph.string_text(), "(SA(1)[B(2)C(3)][D(9)]D(4))(E(5))");
+        assert_eq!(graph.string_text(), "(S A(1)[B(2)C(3)][D(9)]D(4))(E(5))");
         let counts: Vec<String> = graph
             .counts()
             .into_iter()
@@ -263,6 +274,6 @@ mod tests {
     #[test]
     fn a_long_chain_is_no_recursion() {
         let text = format!("S {}", "A(1) ".repeat(5000));
-        assert_eq!(graph(&text).string_text().len(), 1 + 5000 * 4);
+        assert_eq!(graph(&text).string_text().len(), 2 + 5000 * 4);
     }
 }

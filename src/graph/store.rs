@@ -424,7 +424,7 @@ mod tests {
         let b = graph.extent(type_named(&graph, "B")).next().expect("one");
         graph.remove(b);
         graph.end_of_step();
-        assert_eq!(graph.string_text(), "SA(1)A(4)");
+        assert_eq!(graph.string_text(), "S A(1)A(4)");
         assert_eq!(graph.n_nodes(), 4);
     }
 
@@ -439,7 +439,7 @@ mod tests {
         graph.remove_edge(a, b, EdgeBits::ALL);
         graph.note_ring(c, b);
         graph.end_of_step();
-        assert_eq!(graph.string_text(), "SA(1)");
+        assert_eq!(graph.string_text(), "S A(1)");
     }
 
     #[test]
@@ -450,7 +450,7 @@ mod tests {
         graph.add_edge(a, b, EdgeBits::BRANCH).expect("two nodes");
         assert_eq!(graph.n_edges(), 3);
         graph.remove_edge(a, b, EdgeBits::SUCCESSOR);
-        assert_eq!(graph.string_text(), "SA(1)[B(2)]");
+        assert_eq!(graph.string_text(), "S A(1)[B(2)]");
         graph.remove_edge(a, b, EdgeBits::BRANCH);
         assert_eq!(graph.n_edges(), 1 + 1);
         assert_eq!(
