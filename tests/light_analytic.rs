@@ -476,3 +476,14 @@ fn impossible_light_is_refused_when_the_scene_is_built() {
     assert!(messages[0].starts_with("light 0: "), "{}", messages[0]);
     assert!(messages[1].starts_with("sky or sun: "), "{}", messages[1]);
 }
+
+#[test]
+fn the_judge_itself_tells_agreement_fault_and_blindness_apart() {
+    let noise = |spread: f64, n: u64| -> RunningStats {
+        let number = |i| 1.0 + spread * (rng::unit_f64(rng::hash(&[11, i])) - 0.5);
+        (0..n).map(number).collect()
+    };
+    assert_eq!(verdict(&noise(0.1, 1000), 1.0, 1), Verdict::Agrees);
+    assert_eq!(verdict(&noise(0.1, 1000), 1.02, 1), Verdict::Differs);
+    assert_eq!(verdict(&noise(2.0, 100), 1.0, 1), Verdict::Blind);
+}
