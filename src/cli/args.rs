@@ -108,8 +108,13 @@ pub struct RenderArgs {
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
     /// The picture: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    #[arg(
+        short,
+        long,
+        value_name = "FILE",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
@@ -129,8 +134,16 @@ pub struct WatchArgs {
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
     /// The picture: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    #[arg(
+        short,
+        long,
+        value_name = "FILE",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
+    /// Write what was done, and how long it took, to this file, after each picture
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -149,8 +162,13 @@ pub struct FlyArgs {
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
     /// The folder for frame-000000.png and so on; made if it is missing
-    #[arg(short, long, value_name = "FOLDER")]
-    pub output: PathBuf,
+    #[arg(
+        short,
+        long,
+        value_name = "FOLDER",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,

@@ -1,4 +1,68 @@
 //! The program as people meet it: commands, messages, exit codes.
 
 pub mod args;
+mod commands;
+pub mod outcome;
+mod shell;
 pub mod terminal;
+mod watching;
+
+use crate::integrator::CancelToken;
+use crate::watch::Event;
+use args::{Action, Request};
+use outcome::Exit;
+use shell::Shell;
+use std::ffi::OsString;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+
+/// Does what a command line (the program's name first) asks for.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let request = match Request::parse(words) {
+        Ok(request) => request,
+        Err(error) => {
+            // With the terminal gone there is nobody left to tell.
+            let _ = error.print();
+            return if error.use_stderr() {
+                Exit::Usage.into()
+            } else {
+                Exit::Done.into()
+            };
+        }
+    };
+    let cancel = CancelToken::default();
+    let (sender, events) = channel();
+    listen_for_ctrl_c(cancel.clone(), sender.clone());
+    let manners = match &request.action {
+        Action::Check(_) => None,
+        Action::Derive(args) => Some(&args.manners),
+        Action::Render(args) => Some(&args.manners),
+        Action::Watch(args) => Some(&args.manners),
+        Action::Fly(args) => Some(&args.manners),
+    };
+    let shell = Shell::new(&request, manners, cancel);
+    let result = match &request.action {
+        Action::Check(args) => commands::check(&shell, args),
+        Action::Derive(args) => commands::derive(&shell, args),
+        Action::Render(args) => commands::render(&shell, args),
+        Action::Watch(args) => watching::watch(&shell, args, sender, events),
+        Action::Fly(args) => commands::fly(&shell, args),
+    };
+    shell.conclude(result).into()
+}
+
+/// The first Ctrl-C asks for a clean stop, a second one ends the program at once.
+fn listen_for_ctrl_c(cancel: CancelToken, events: Sender<Event>) {
+    let is_second = AtomicBool::new(false);
+    let handler = move || {
+        if is_second.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::World as i32);
+        }
+        cancel.cancel();
+        // Only `watch` reads events.
+        let _ = events.send(Event::Quit);
+    };
+    // Without a handler Ctrl-C still ends the program, only less politely.
+    let _ = ctrlc::set_handler(handler);
+}

@@ -5,6 +5,7 @@
     reason = "this is the one place that speaks to the user"
 )]
 
+use crate::diag::{Diagnostics, SourceMap, render};
 use crate::integrator::CancelToken;
 use crate::pipeline::audience::Audience;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -99,6 +100,17 @@ impl Terminal {
         }
     }
 
+    /// Shows what is wrong with a model.
+    pub fn diagnose(&self, sources: &SourceMap, found: &Diagnostics) {
+        let wants_color = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+        let text = if wants_color {
+            render::render_colored(sources, found)
+        } else {
+            render::render(sources, found)
+        };
+        self.tell(&text);
+    }
+
     /// Writes to standard error, above the bar if there is one.
     pub fn tell(&self, text: &str) {
         let bar = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
@@ -134,6 +146,10 @@ impl Audience for Terminal {
             ModelOutput::Standard => self.print(text),
             ModelOutput::Error => self.tell(text),
         }
+    }
+
+    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
+        self.diagnose(sources, found);
     }
 
     fn begins(&self, stage: &'static str) {

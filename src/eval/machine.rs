@@ -203,7 +203,7 @@ impl Machine {
             "this loop does not end: {} turns and calls in one step",
             self.limits.steps
         );
-        let hint = "does its condition ever become false? `step_limit` allows more turns";
+        let hint = "does its condition ever become false?";
         Err(Trap::limit("step-limit", message, hint, Some(span)))
     }
 

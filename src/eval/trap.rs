@@ -98,7 +98,7 @@ impl Trap {
         Self::limit(
             "memory-limit",
             message,
-            "look for a text, array or list that grows without end, or raise `max_memory`",
+            "look for a text, array or list that grows without end, or raise `--max-memory`",
             span,
         )
     }
@@ -199,7 +199,7 @@ impl From<GraphError> for Trap {
                 return Self::limit(
                     "module-limit",
                     message,
-                    "does a rule multiply without end? `max_modules` allows more",
+                    "does a rule multiply without end? `--max-modules` allows more",
                     None,
                 );
             }

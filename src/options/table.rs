@@ -215,7 +215,7 @@ options! {
     /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
     max_depth: Option<u32> = "none", "max-depth", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
-    time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render];
+    time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture
     exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, PICTURING;
 

@@ -1,9 +1,14 @@
 //! Who is told how a run goes.
 
+use crate::diag::{Diagnostics, SourceMap};
+
 /// Who is told how a run goes, while it goes. Calls come from any thread.
-pub trait Audience: Sync {
+pub trait Audience: Send + Sync {
     /// The model printed this; line ends are part of it.
     fn printed(&self, text: &str);
+
+    /// Something about the model is questionable.
+    fn warned(&self, sources: &SourceMap, found: &Diagnostics);
 
     /// A stage of the run begins (`growing`, say); the one before has ended.
     fn begins(&self, stage: &'static str);

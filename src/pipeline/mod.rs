@@ -1,16 +1,20 @@
 //! From a model on disk to a picture on disk: the stages, what each depends on, and all contact with the machine.
 //!
 //! read → check → derive → describe → build → prepare → view → write. Each stage is keyed by what it depends on (texts,
-//! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed.
+//! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed: a
+//! [`Studio`](studio::Studio) keeps the stages up to the scene, [`Making`](making::Making) takes pictures of it.
 
 pub mod audience;
 pub mod budget;
 pub mod content_hash;
 pub mod exposing;
 pub mod failure;
+pub mod growing;
+pub mod making;
 pub mod report;
 pub mod sources;
 pub mod store;
+pub mod studio;
 pub mod surroundings;
 pub mod viewing;
 pub mod viewpoint;

@@ -3,7 +3,7 @@
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::world::{Entry, World};
-use crate::diag::{Diagnostic, FileId, Severity, SourceMap};
+use crate::diag::{Diagnostic, Diagnostics, FileId, Severity, SourceMap};
 use crate::options::Options;
 use std::path::{Path, PathBuf};
 
@@ -125,24 +125,17 @@ impl Inputs {
 }
 
 impl Sources {
-    /// The options of the run: `flags` over the file beside the model over the preset over the defaults.
-    ///
-    /// # Errors
-    /// If the file beside the model is wrong.
-    pub fn options(&self, flags: &Options) -> Result<Options, Failure> {
+    /// The options of the run: `flags` over the file beside the model over the preset over the defaults; and what is wrong
+    /// with that file.
+    pub fn options(&self, flags: &Options) -> (Options, Diagnostics) {
         let mut options = flags.clone();
+        let mut found = Diagnostics::default();
         if let Some(id) = self.sidecar {
             let text = self.map.file(id).map_or("", |file| &file.text);
-            let found = options.read_sidecar(id, text);
-            if found.has_errors() {
-                return Err(Failure::Model {
-                    sources: self.map.clone(),
-                    found,
-                });
-            }
+            found = options.read_sidecar(id, text);
         }
         options.apply_preset();
-        Ok(options)
+        (options, found)
     }
 }
 
@@ -208,7 +201,8 @@ mod tests {
         let sources = find(&world, "p.rgg").unwrap().read(&world).unwrap();
         let mut flags = Options::default();
         flags.set("steps", "5", Origin::Flag).unwrap();
-        let options = sources.options(&flags).unwrap();
+        let (options, found) = sources.options(&flags);
+        assert!(found.is_empty());
         assert_eq!(options.steps.value, 5);
         assert_eq!(
             (options.samples.value.get(), options.max_depth.value),

@@ -2,7 +2,8 @@
 
 use crate::color::Rgb;
 use crate::geometry::Shape;
-use crate::light::{Environment, Sky};
+use crate::interpret::Summary;
+use crate::light::Environment;
 use crate::material::Material;
 use crate::math::angle::Angle;
 use crate::options::Options;
@@ -23,8 +24,8 @@ const SOIL: Rgb = Rgb::new(0.23, 0.21, 0.15);
 const SUN: (Angle, Angle) = (Angle::deg(225.0), Angle::deg(40.0));
 
 /// Adds the daylight and the ground that the options ask for.
-pub fn complete(description: &mut SceneDescription, options: &Options) {
-    let has_light = has_light(description);
+pub fn complete(description: &mut SceneDescription, model: &Summary, options: &Options) {
+    let has_light = model.has_light;
     let sun = match options.sun.value {
         Daylight::Auto if has_light => None,
         Daylight::Auto => Some(SUN),
@@ -32,7 +33,7 @@ pub fn complete(description: &mut SceneDescription, options: &Options) {
         Daylight::Sun { azimuth, elevation } => Some((azimuth, elevation)),
     };
     let wants_ground = match options.ground.value {
-        Ground::Auto => !has_light && sun.is_some() && !has_plane(description),
+        Ground::Auto => !has_light && sun.is_some() && !model.has_plane,
         Ground::None => false,
         Ground::Color(_) => true,
     };
@@ -51,23 +52,12 @@ pub fn complete(description: &mut SceneDescription, options: &Options) {
     }
 }
 
-fn has_light(description: &SceneDescription) -> bool {
-    !description.lights.is_empty()
-        || description.materials.iter().any(Material::is_emitter)
-        || description.environment.sun.is_some()
-        || description.environment.sky != Sky::None
-}
-
 /// The shapes placed in the world itself, not in instances.
 fn world_shapes(description: &SceneDescription) -> impl Iterator<Item = &PlacedShape> {
     let root = description
         .root
         .and_then(|root| description.groups.get(root.0 as usize));
     root.into_iter().flat_map(|group| &group.shapes)
-}
-
-fn has_plane(description: &SceneDescription) -> bool {
-    world_shapes(description).any(|placed| placed.shape == Shape::Plane)
 }
 
 /// Adds the plane z = 0, a little lower where the model has a floor of its own there.
@@ -133,7 +123,8 @@ fn floor_size(placed: &PlacedShape) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::Light;
+    use crate::light::{Light, Sky};
+    use crate::math::Bounds3;
     use crate::options::Origin;
 
     fn model(shapes: Vec<Shape>) -> SceneDescription {
@@ -160,7 +151,12 @@ mod tests {
         for (key, text) in flags {
             options.set(key, text, Origin::Flag).unwrap();
         }
-        complete(&mut description, &options);
+        let model = Summary {
+            has_light: !description.lights.is_empty(),
+            has_plane: plane_height(&description).is_some(),
+            bounds: Bounds3::EMPTY,
+        };
+        complete(&mut description, &model, &options);
         description
     }
 

@@ -103,7 +103,7 @@ mod tests {
         for (key, text) in flags {
             options.set(key, text, Origin::Flag).unwrap();
         }
-        let options = sources.options(&options).unwrap();
+        let (options, _) = sources.options(&options);
         (sources, options)
     }
 

@@ -1,0 +1,211 @@
+//! The commands that run once.
+
+use super::args::{CheckArgs, DeriveArgs, FlyArgs, Print, RenderArgs};
+use super::shell::Shell;
+use crate::growth::Growth;
+use crate::options::Command;
+use crate::pipeline::budget;
+use crate::pipeline::failure::Failure;
+use crate::pipeline::growing;
+use crate::pipeline::making::{Made, Partial};
+use crate::pipeline::store::{JsonTarget, PictureTarget};
+use crate::pipeline::studio::{Keep, Run, Studio};
+use crate::pipeline::viewpoint;
+use crate::pipeline::world::{Entry, World};
+use std::path::Path;
+
+/// Keys by which an earlier file of `derive --json` is known.
+const DERIVE_KEYS: &[&str] = &["step", "modules", "total", "hash"];
+
+/// `check`: reads and checks, writes nothing.
+pub(super) fn check(shell: &Shell, args: &CheckArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    let mut studio = studio(shell, path);
+    let opened = studio.read(&shell.flags)?;
+    let options = opened.options.clone();
+    shell.on_threads(&options, || studio.check(opened))?;
+    shell
+        .terminal
+        .note(&format!("{}: no errors", path.display()));
+    Ok(())
+}
+
+/// `derive`: grows and prints.
+pub(super) fn derive(shell: &Shell, args: &DeriveArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    if args.manners.explain_options {
+        return shell.explain(path, Command::Derive);
+    }
+    let json = args.json.as_deref();
+    let json = json
+        .map(|json| JsonTarget::new(&shell.world, json, DERIVE_KEYS))
+        .transpose()?;
+    let mut studio = studio(shell, path);
+    run(shell, &mut studio, |studio, run| {
+        let growth = studio.grow(run, &shell.cancel)?;
+        if let Some(what) = args.print {
+            shell.terminal.print(&printed(&growth, what));
+        }
+        let seconds = studio.seconds.derive;
+        let census = growing::census(&growth, run.options.seed.value, seconds);
+        if let Some(json) = &json {
+            json.write(&shell.world, &census)?;
+        }
+        let (step, total) = (growth.steps(), growth.total());
+        let steps = if step == 1 { "step" } else { "steps" };
+        shell.terminal.note(&format!(
+            "{total} modules after {step} {steps} ({seconds:.2} s)"
+        ));
+        Ok(())
+    })
+}
+
+fn printed(growth: &Growth, what: Print) -> String {
+    let mut text = match what {
+        Print::Tree => growth.tree_text(),
+        Print::Counts => {
+            let counts = growth.counts();
+            counts
+                .into_iter()
+                .map(|(name, count)| format!("{name} {count}\n"))
+                .collect()
+        }
+        Print::String => growth.string_text(),
+    };
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    text
+}
+
+/// `render`: one picture.
+pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    let output = match &args.output {
+        Some(output) if !args.manners.explain_options => output,
+        _ => return shell.explain(path, Command::Render),
+    };
+    let target = PictureTarget::new(&shell.world, output)?;
+    let report = shell.report_target(args.report.as_deref())?;
+    let mut studio = studio(shell, path);
+    run(shell, &mut studio, |studio, run| {
+        check_wishes(&shell.world, run)?;
+        let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
+        shell.report(report.as_ref(), run, &studio.seconds, &made)?;
+        shell
+            .terminal
+            .note(&summary(target.path(), run, studio, &made));
+        finished(&made)
+    })
+}
+
+/// `fly`: the frames of a film.
+pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    let output = match &args.output {
+        Some(output) if !args.manners.explain_options => output,
+        _ => return shell.explain(path, Command::Fly),
+    };
+    check_folder(&shell.world, output)?;
+    let report = shell.report_target(args.report.as_deref())?;
+    let mut studio = studio(shell, path);
+    run(shell, &mut studio, |studio, run| {
+        if !run.options.orbit.value {
+            let message = "a flight needs a path: `--orbit` flies once round the model";
+            return Err(Failure::Usage(message.into()));
+        }
+        check_wishes(&shell.world, run)?;
+        open_folder(&shell.world, output)?;
+        let made = shell.making(Partial::Drop).film(studio, run, output)?;
+        shell.report(report.as_ref(), run, &studio.seconds, &made)?;
+        let kept = match made.n_kept {
+            0 => String::new(),
+            n => format!(", {n} kept"),
+        };
+        let (folder, seconds) = (output.display(), studio.seconds.summary());
+        shell.terminal.note(&format!(
+            "{folder}: {} frames made{kept} ({seconds})",
+            made.n_made
+        ));
+        finished(&made)
+    })
+}
+
+/// Reads and checks the model of `studio` and works on it, on the threads that its options ask for.
+pub(super) fn run<T: Send>(
+    shell: &Shell,
+    studio: &mut Studio<'_>,
+    work: impl FnOnce(&mut Studio<'_>, &Run) -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let opened = studio.read(&shell.flags)?;
+    let options = opened.options.clone();
+    shell.on_threads(&options, || {
+        let run = studio.check(opened)?;
+        work(studio, &run)
+    })
+}
+
+/// A line about a picture that was written.
+pub(super) fn summary(path: &Path, run: &Run, studio: &Studio<'_>, made: &Made) -> String {
+    let error = match made.effort.relative_error {
+        Some(error) => format!(", estimated error {:.1} %", 100.0 * error),
+        None => String::new(),
+    };
+    let size = run.options.size.value;
+    format!(
+        "{}: {}x{}, {} samples per pixel{error}, seed {} ({})",
+        path.display(),
+        size.width,
+        size.height,
+        made.effort.samples_per_pixel,
+        run.options.seed.value,
+        studio.seconds.summary()
+    )
+}
+
+/// Refuses what cannot be shown, before the model is grown.
+pub(super) fn check_wishes(world: &dyn World, run: &Run) -> Result<(), Failure> {
+    budget::check_picture(world, &run.options)?;
+    viewpoint::check(&run.sources, &run.options)
+}
+
+fn studio<'s>(shell: &'s Shell, path: &Path) -> Studio<'s> {
+    Studio::new(
+        &shell.world,
+        shell.terminal.clone(),
+        path.to_owned(),
+        Keep::Last,
+    )
+}
+
+fn finished(made: &Made) -> Result<(), Failure> {
+    if made.is_whole {
+        Ok(())
+    } else {
+        Err(Failure::Stopped)
+    }
+}
+
+/// Refuses what cannot be the folder of a film, before any work is done.
+fn check_folder(world: &dyn World, path: &Path) -> Result<(), Failure> {
+    match (world.entry(path), path.extension()) {
+        (Entry::Folder, _) | (Entry::Missing, None) => Ok(()),
+        (_, Some(suffix)) => Err(Failure::Usage(format!(
+            "films as one `.{}` file are not in this version: name a folder for the frames (a path without a suffix)",
+            suffix.to_string_lossy()
+        ))),
+        (Entry::File, None) => Err(Failure::World(format!(
+            "cannot write into `{}`: it is a file",
+            path.display()
+        ))),
+    }
+}
+
+fn open_folder(world: &dyn World, path: &Path) -> Result<(), Failure> {
+    world
+        .create_folder(path)
+        .map_err(|error| Failure::file("make folder", path, &error))?;
+    world
+        .try_folder(path)
+        .map_err(|error| Failure::file("write files into", path, &error))
+}

@@ -1,0 +1,140 @@
+//! What all commands share: the machine, the terminal, the threads, the wish to stop.
+
+use super::args::{Manners, Request};
+use super::outcome::{self, Exit};
+use super::terminal::{Manner, ModelOutput, Terminal};
+use crate::integrator::CancelToken;
+use crate::options::{Command, Options, explain};
+use crate::pipeline::failure::Failure;
+use crate::pipeline::making::{Made, Making, Partial};
+use crate::pipeline::report::{PhaseSeconds, REPORT_KEYS, Report};
+use crate::pipeline::sources::Inputs;
+use crate::pipeline::store::JsonTarget;
+use crate::pipeline::studio::Run;
+use crate::pipeline::world::Machine;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Stack of each thread: deep recursion in a model ends by the language's own limit, long before this.
+const STACK: usize = 64 << 20;
+
+/// What all commands share.
+pub(super) struct Shell {
+    /// The machine.
+    pub(super) world: Machine,
+    /// The terminal.
+    pub(super) terminal: Arc<Terminal>,
+    /// Set by Ctrl-C.
+    pub(super) cancel: CancelToken,
+    /// The options set by flags.
+    pub(super) flags: Options,
+}
+
+impl Shell {
+    /// The shell of a request.
+    pub(super) fn new(request: &Request, manners: Option<&Manners>, cancel: CancelToken) -> Self {
+        let manner = match manners {
+            Some(manners) if manners.quiet => Manner::Quiet,
+            _ => Manner::Talkative,
+        };
+        let output = match request.action.command() {
+            Command::Derive => ModelOutput::Standard,
+            Command::Check | Command::Render | Command::Watch | Command::Fly => ModelOutput::Error,
+        };
+        let terminal = Arc::new(Terminal::new(manner, output, cancel.clone()));
+        Self {
+            world: Machine::new(),
+            terminal,
+            cancel,
+            flags: request.flags.clone(),
+        }
+    }
+
+    /// Does the work of a command on as many threads as the options ask for.
+    ///
+    /// # Errors
+    /// What the work fails with, or if there are no such threads.
+    pub(super) fn on_threads<T: Send>(
+        &self,
+        options: &Options,
+        work: impl FnOnce() -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
+        let n_threads = options.threads.value.map_or(0, |threads| threads.0.get());
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .stack_size(STACK)
+            .build();
+        match pool {
+            Ok(pool) => pool.install(work),
+            Err(error) => Err(Failure::World(format!(
+                "cannot start {n_threads} threads: {error}"
+            ))),
+        }
+    }
+
+    /// Prints the options of a model as they are for `command`.
+    ///
+    /// # Errors
+    /// If the model or the file beside it cannot be read, or that file is wrong.
+    pub(super) fn explain(&self, path: &Path, command: Command) -> Result<(), Failure> {
+        let sources = Inputs::find(&self.world, path)?.read(&self.world)?;
+        let (options, found) = sources.options(&self.flags);
+        if found.has_errors() {
+            return Err(Failure::Model {
+                sources: sources.map,
+                found,
+            });
+        }
+        self.terminal
+            .print(&explain::explain(&options, command, &sources.map));
+        Ok(())
+    }
+
+    /// What making pictures needs.
+    pub(super) fn making(&self, partial: Partial) -> Making<'_> {
+        Making {
+            world: &self.world,
+            audience: &*self.terminal,
+            cancel: &self.cancel,
+            partial,
+        }
+    }
+
+    /// The report file to be, if one is wanted.
+    ///
+    /// # Errors
+    /// If it could not be written.
+    pub(super) fn report_target(&self, path: Option<&Path>) -> Result<Option<JsonTarget>, Failure> {
+        path.map(|path| JsonTarget::new(&self.world, path, REPORT_KEYS))
+            .transpose()
+    }
+
+    /// Writes the report, if one is wanted.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn report(
+        &self,
+        target: Option<&JsonTarget>,
+        run: &Run,
+        seconds: &PhaseSeconds,
+        made: &Made,
+    ) -> Result<(), Failure> {
+        let Some(target) = target else { return Ok(()) };
+        let model = (&run.sources.map, run.sources.model_hash);
+        let report = Report::new(
+            &self.world,
+            model,
+            &run.options,
+            seconds,
+            made.effort,
+            made.hash,
+        );
+        target.write(&self.world, &report)
+    }
+
+    /// Ends the command.
+    pub(super) fn conclude(&self, result: Result<(), Failure>) -> Exit {
+        outcome::conclude(&self.terminal, result)
+    }
+}

@@ -1,0 +1,199 @@
+//! The stages of the language: text → checked model → grown graph → shapes.
+
+use super::audience::Audience;
+use super::failure::Failure;
+use super::sources::{Sources, placeless};
+use super::studio::Run;
+use crate::check::SourceModel;
+use crate::check::model::Model;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::eval;
+use crate::growth::{Growth, GrowthOptions};
+use crate::integrator::CancelToken;
+use crate::interpret::{self, Organs, Summary};
+use crate::options::{Options, Origin};
+use crate::scene::SceneError;
+use crate::scene::description::SceneDescription;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Memory that a typical organ takes in the graph, in bytes.
+const BYTES_PER_MODULE: u64 = 64;
+
+/// A grown model as geometry.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// Its shapes, materials and lights.
+    pub scene: SceneDescription,
+    /// Which node each organ number stands for.
+    pub organs: Arc<Organs>,
+    /// What surroundings depend on.
+    pub summary: Summary,
+}
+
+/// What `derive --json` writes.
+#[derive(Debug, Serialize)]
+pub struct Census {
+    step: u64,
+    modules: BTreeMap<String, usize>,
+    total: usize,
+    seconds: f64,
+    seed: i64,
+    hash: String,
+}
+
+/// Reads and checks the texts of a model.
+pub fn check(sources: &Sources) -> (Model, Diagnostics) {
+    let mut found = Diagnostics::default();
+    let files: Vec<SourceModel> = sources
+        .models
+        .iter()
+        .filter_map(|&id| Some((id, sources.map.file(id)?)))
+        .map(|(id, file)| {
+            let (ast, more) = crate::syntax::parse(id, &file.text);
+            found.append(more);
+            let stem = Path::new(&*file.name).file_stem().unwrap_or_default();
+            SourceModel {
+                name: stem.to_string_lossy().into_owned(),
+                ast,
+            }
+        })
+        .collect();
+    if found.has_errors() {
+        // What the checker would say of half a tree misleads.
+        return (Model::default(), found);
+    }
+    let (model, more) = crate::check::check(&files);
+    found.append(more);
+    if !found.has_errors() && model.init.is_none() && model.entries.is_empty() {
+        let names: Vec<String> = sources
+            .map
+            .files()
+            .iter()
+            .take(files.len())
+            .map(|f| format!("`{}`", f.name))
+            .collect();
+        let message = format!(
+            "{} has neither `init` nor a method to step",
+            names.join(", ")
+        );
+        let hint = "begin with `protected void init() [ Axiom ==> …; ]`";
+        // What else is questionable about nothing is not news.
+        found = placeless("empty-model", message).hint(hint).into();
+    }
+    (model, found)
+}
+
+/// Grows a model by the steps that the options ask for, within `memory` bytes.
+///
+/// # Errors
+/// What goes wrong in the model, or that it was stopped.
+pub fn grow(
+    run: &Run,
+    memory: u64,
+    audience: &Arc<dyn Audience>,
+    cancel: &CancelToken,
+) -> Result<Growth, Failure> {
+    let blame = |diagnostic: Box<Diagnostic>| {
+        if cancel.is_cancelled() {
+            Failure::Stopped
+        } else {
+            Failure::model(&run.sources.map, *diagnostic)
+        }
+    };
+    let limits = eval::Limits::default();
+    let nodes = run
+        .options
+        .max_modules
+        .value
+        .get()
+        .min(memory / BYTES_PER_MODULE);
+    let limits = eval::Limits {
+        nodes,
+        memory: limits.memory.min(memory),
+        ..limits
+    };
+    let options = GrowthOptions {
+        seed: run.options.seed.value,
+        limits,
+        entry: run.options.entry.value.clone(),
+    };
+    let listener = audience.clone();
+    let output = Box::new(move |text: &str| listener.printed(text));
+    let token = cancel.clone();
+    let stop = Box::new(move || token.is_cancelled());
+    let mut growth = Growth::new(&run.model, options, output, stop).map_err(blame)?;
+    growth.init().map_err(blame)?;
+    let n_steps = steps(&run.options, &growth);
+    for step in 0..n_steps {
+        if cancel.is_cancelled() {
+            return Err(Failure::Stopped);
+        }
+        growth.step().map_err(blame)?;
+        audience.progress(u64::from(step) + 1, u64::from(n_steps));
+    }
+    Ok(growth)
+}
+
+/// How many steps to make. A model that has no step method is complete after `init`, unless the user asked for steps.
+fn steps(options: &Options, growth: &Growth) -> u32 {
+    let is_wanted =
+        options.steps.origin != Origin::Default || options.entry.origin != Origin::Default;
+    let has_entry = growth.entries().any(|name| name == options.entry.value);
+    if has_entry || is_wanted {
+        options.steps.value
+    } else {
+        0
+    }
+}
+
+/// Turns a grown graph into geometry of at most `memory` bytes; also what is questionable about it.
+///
+/// # Errors
+/// If a part of the model cannot be drawn.
+pub fn draw(
+    run: &Run,
+    memory: u64,
+    growth: &mut Growth,
+    cancel: &CancelToken,
+) -> Result<(Drawn, Diagnostics), Failure> {
+    let limits = interpret::Limits {
+        memory,
+        ..interpret::Limits::default()
+    };
+    match interpret::interpret(growth, limits) {
+        Ok(drawn) => {
+            let organs = Arc::new(drawn.organs);
+            let (scene, summary) = (drawn.scene, drawn.summary);
+            Ok((
+                Drawn {
+                    scene,
+                    organs,
+                    summary,
+                },
+                drawn.warnings,
+            ))
+        }
+        Err(_) if cancel.is_cancelled() => Err(Failure::Stopped),
+        Err(diagnostic) => Err(Failure::model(&run.sources.map, *diagnostic)),
+    }
+}
+
+/// Blames the model for geometry that cannot be a scene.
+pub fn blame(run: &Run, organs: &Organs, error: &SceneError) -> Failure {
+    Failure::model(&run.sources.map, interpret::explain(error, organs))
+}
+
+/// What `derive --json` writes of a growth that took so many seconds.
+pub fn census(growth: &Growth, seed: i64, seconds: f64) -> Census {
+    Census {
+        step: growth.steps(),
+        modules: growth.counts().into_iter().collect(),
+        total: growth.total(),
+        seconds,
+        seed,
+        hash: format!("{:016x}", growth.hash()),
+    }
+}

@@ -1,0 +1,243 @@
+//! The stages of a run, each kept for the next run that has the same inputs.
+
+use super::audience::Audience;
+use super::budget;
+use super::content_hash::ContentHash;
+use super::failure::Failure;
+use super::growing::{self, Drawn};
+use super::report::{Phase, PhaseSeconds};
+use super::sources::{Inputs, Sources};
+use super::surroundings;
+use super::world::World;
+use crate::check::model::Model;
+use crate::diag::Diagnostics;
+use crate::growth::Growth;
+use crate::integrator::CancelToken;
+use crate::options::{Options, Stage};
+use crate::scene::Scene;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A model that has been read, with the options that apply to it.
+#[derive(Debug)]
+pub struct Opened {
+    /// Its texts.
+    pub sources: Sources,
+    /// Its options.
+    pub options: Options,
+    /// What is wrong with the file beside it.
+    found: Diagnostics,
+}
+
+/// A model that has been read and checked, with the options that apply to it.
+#[derive(Debug)]
+pub struct Run {
+    /// Its texts.
+    pub sources: Sources,
+    /// Its options.
+    pub options: Options,
+    /// The checked model.
+    pub model: Model,
+}
+
+/// Whether stages are kept after the next one is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keep {
+    /// Each stage gives its memory back as soon as the next one is done.
+    Last,
+    /// All stages stay for the next run.
+    All,
+}
+
+/// Runs one model, perhaps many times, and repeats only what changed.
+pub struct Studio<'w> {
+    world: &'w dyn World,
+    audience: Arc<dyn Audience>,
+    path: PathBuf,
+    keep: Keep,
+    drawn: Option<(ContentHash, Drawn)>,
+    scene: Option<(ContentHash, Arc<Scene>)>,
+    /// Time spent since this was last reset.
+    pub seconds: PhaseSeconds,
+}
+
+impl Run {
+    /// Equal for runs that grow the same graph.
+    pub fn growth_key(&self) -> ContentHash {
+        self.sources
+            .model_hash
+            .with(&self.options.fingerprint(Stage::Growth))
+    }
+
+    /// Equal for runs with the same scene.
+    pub fn scene_key(&self) -> ContentHash {
+        self.growth_key()
+            .with(&self.options.fingerprint(Stage::Scene))
+    }
+
+    /// Equal for runs with the same picture, of this version of the program.
+    pub fn picture_key(&self) -> ContentHash {
+        let options = self.options.fingerprint(Stage::View);
+        self.scene_key()
+            .with(&options)
+            .with(env!("CARGO_PKG_VERSION"))
+    }
+
+    /// What a picture tells of its making: program, model, seed, and the options that were set.
+    pub fn texts(&self) -> Vec<(&'static str, String)> {
+        let entries = self.options.entries();
+        let set = entries.iter().filter(|entry| {
+            entry.row.stage != Stage::Machine && entry.origin != crate::options::Origin::Default
+        });
+        let options: Vec<String> = set
+            .map(|entry| format!("{}={}", entry.row.key, entry.text))
+            .collect();
+        vec![
+            (
+                "Software",
+                format!("understory {}", env!("CARGO_PKG_VERSION")),
+            ),
+            ("Model", self.sources.model_hash.to_string()),
+            ("Seed", self.options.seed.value.to_string()),
+            ("Options", options.join(" ")),
+        ]
+    }
+}
+
+impl<'w> Studio<'w> {
+    /// A studio for the model at `path`.
+    pub fn new(
+        world: &'w dyn World,
+        audience: Arc<dyn Audience>,
+        path: PathBuf,
+        keep: Keep,
+    ) -> Self {
+        let seconds = PhaseSeconds::default();
+        Self {
+            world,
+            audience,
+            path,
+            keep,
+            drawn: None,
+            scene: None,
+            seconds,
+        }
+    }
+
+    /// Reads the model and the file beside it.
+    ///
+    /// # Errors
+    /// If one cannot be read.
+    pub fn read(&mut self, flags: &Options) -> Result<Opened, Failure> {
+        let (world, path) = (self.world, &self.path);
+        self.seconds.time(world, Phase::Read, || {
+            let sources = Inputs::find(world, path)?.read(world)?;
+            let (options, found) = sources.options(flags);
+            Ok(Opened {
+                sources,
+                options,
+                found,
+            })
+        })
+    }
+
+    /// Checks the model.
+    ///
+    /// # Errors
+    /// If anything is wrong with it or the file beside it: all of it.
+    pub fn check(&mut self, opened: Opened) -> Result<Run, Failure> {
+        let Opened {
+            sources,
+            options,
+            mut found,
+        } = opened;
+        let (model, more) = self
+            .seconds
+            .time(self.world, Phase::Read, || growing::check(&sources));
+        found.append(more);
+        if found.has_errors() {
+            return Err(Failure::Model {
+                sources: sources.map,
+                found,
+            });
+        }
+        if !found.is_empty() {
+            self.audience.warned(&sources.map, &found);
+        }
+        Ok(Run {
+            sources,
+            options,
+            model,
+        })
+    }
+
+    /// Grows the model.
+    ///
+    /// # Errors
+    /// If growth fails, exceeds a budget, or was stopped.
+    pub fn grow(&mut self, run: &Run, cancel: &CancelToken) -> Result<Growth, Failure> {
+        self.audience.begins("growing");
+        let memory = budget::memory(self.world, &run.options);
+        let audience = &self.audience;
+        let grown = self.seconds.time(self.world, Phase::Derive, || {
+            growing::grow(run, memory, audience, cancel)
+        });
+        self.audience.ends();
+        grown
+    }
+
+    /// Grows the model and builds its scene, as far as they are not there from the run before.
+    ///
+    /// # Errors
+    /// As [`grow`](Self::grow), or if its geometry cannot be a scene.
+    pub fn build(&mut self, run: &Run, cancel: &CancelToken) -> Result<Arc<Scene>, Failure> {
+        let key = run.scene_key();
+        if let Some((known, scene)) = &self.scene
+            && *known == key
+        {
+            return Ok(scene.clone());
+        }
+        self.scene = None;
+        let mut drawn = self.draw(run, cancel)?;
+        self.audience.begins("building the scene");
+        surroundings::complete(&mut drawn.scene, &drawn.summary, &run.options);
+        let built = self
+            .seconds
+            .time(self.world, Phase::Accel, || Scene::build(drawn.scene));
+        self.audience.ends();
+        let scene = built.map_err(|error| growing::blame(run, &drawn.organs, &error))?;
+        if cancel.is_cancelled() {
+            return Err(Failure::Stopped);
+        }
+        let scene = Arc::new(scene);
+        self.scene = Some((key, scene.clone()));
+        Ok(scene)
+    }
+
+    /// Grows the model and turns it into geometry. The graph is given back at once: it is large, and what light needs of
+    /// it is in the geometry.
+    fn draw(&mut self, run: &Run, cancel: &CancelToken) -> Result<Drawn, Failure> {
+        let key = run.growth_key();
+        if let Some((known, drawn)) = &self.drawn
+            && *known == key
+        {
+            return Ok(drawn.clone());
+        }
+        self.drawn = None;
+        let mut growth = self.grow(run, cancel)?;
+        self.audience.begins("drawing");
+        let memory = budget::memory(self.world, &run.options);
+        let drawn = self.seconds.time(self.world, Phase::Scene, || {
+            growing::draw(run, memory, &mut growth, cancel)
+        });
+        self.audience.ends();
+        let (drawn, found) = drawn?;
+        if !found.is_empty() {
+            self.audience.warned(&run.sources.map, &found);
+        }
+        if self.keep == Keep::All {
+            self.drawn = Some((key, drawn.clone()));
+        }
+        Ok(drawn)
+    }
+}

@@ -1,0 +1,415 @@
+//! The program as a user runs it: messages, exit codes, files, and nothing left behind.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use assert_cmd::Command;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// A small tree that grows.
+const TREE: &str = "\
+module Bud(float len) extends Sphere(0.05);
+protected void init() [ Axiom ==> Bud(1); ]
+public void run() [
+    Bud(x) ==> F(x, 0.05) [ RU(40) Bud(x * 0.7) ] [ RU(-30) RH(90) Bud(x * 0.6) ];
+]
+";
+
+/// A folder with a model in it, gone after the test.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new(model: &str) -> Self {
+        let bench = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        bench.write("m.rgg", model);
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    /// Runs the program in the folder; words are separated by single spaces.
+    fn run(&self, line: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_understory"))
+            .current_dir(self.folder.path())
+            .args(line.split(' '))
+            .timeout(Duration::from_secs(120))
+            .output()
+            .unwrap()
+    }
+
+    fn succeed(&self, line: &str) -> String {
+        let output = self.run(line);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{line}\n{}",
+            text(&output.stderr)
+        );
+        text(&output.stdout)
+    }
+
+    /// Runs what must fail with `code`, without a panic, and returns the message.
+    fn fail(&self, line: &str, code: i32) -> String {
+        let output = self.run(line);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{line}\n{message}");
+        assert!(!message.contains("panicked"), "{line}\n{message}");
+        message
+    }
+
+    fn files(&self) -> BTreeSet<String> {
+        let entries = fs::read_dir(self.folder.path()).unwrap();
+        entries
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect()
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn bytes(path: &Path) -> Vec<u8> {
+    fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Flags of pictures that cost nothing.
+const SMALL: &str = "--size 24x16 --samples 2";
+
+#[test]
+fn broken_models_give_one_clear_message_and_no_file() {
+    let run = |body: &str| {
+        format!("module A;\nprotected void init() [ Axiom ==> A; ]\npublic void run() {body}\n")
+    };
+    let cases = [
+        ("syntax", run("[ A ==> F(1; ]"), "", &["m.rgg:"][..]),
+        (
+            "unknown module",
+            run("[ A ==> F(1) Intenode; ]"),
+            "",
+            &["Intenode", "m.rgg:3"][..],
+        ),
+        (
+            "wrong arity",
+            run("[ A ==> RU(1, 2, 3, 4, 5); ]"),
+            "",
+            &["RU", "m.rgg:3"][..],
+        ),
+        (
+            "wrong type",
+            run("{ int i = \"three\"; }"),
+            "",
+            &["String", "int", "m.rgg:3"][..],
+        ),
+        ("empty file", String::new(), "", &["m.rgg"][..]),
+        (
+            "geometry that is no number",
+            run("[ A ==> Sphere(0.0 / 0.0); ]"),
+            "",
+            &["finite"][..],
+        ),
+        (
+            "endless loop",
+            run("{ while (true) { } }"),
+            "",
+            &["m.rgg:3"][..],
+        ),
+        (
+            "exploding rule",
+            run("[ A ==> A A; ]"),
+            "--steps 60 --max-modules 5000",
+            &["m.rgg:3"][..],
+        ),
+    ];
+    for (name, model, flags, expected) in cases {
+        let bench = Bench::new(&model);
+        let line = format!("render m.rgg -o m.png {SMALL} {flags}");
+        let message = bench.fail(line.trim_end(), 1);
+        for word in expected {
+            assert!(message.contains(word), "{name}: no `{word}` in\n{message}");
+        }
+        assert_eq!(
+            message.matches("Error").count(),
+            1,
+            "{name}: not one message\n{message}"
+        );
+        assert_eq!(
+            bench.files(),
+            BTreeSet::from(["m.rgg".to_owned()]),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn a_model_that_cannot_be_read_is_the_worlds_fault() {
+    let bench = Bench::new(TREE);
+    let message = bench.fail("render none.rgg -o m.png", 3);
+    assert!(
+        message.contains("none.rgg") && message.contains("no such"),
+        "{message}"
+    );
+    fs::create_dir(bench.path("folder.rgg")).unwrap();
+    assert!(bench.fail("check folder.rgg", 3).contains("no `.rgg` file"));
+    fs::write(bench.path("b.rgg"), [0x6d, 0xff, 0xfe]).unwrap();
+    assert!(bench.fail("check b.rgg", 1).contains("UTF-8"));
+    assert!(bench.fail("check m.txt", 2).contains("m.txt"));
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_told_before_the_work() {
+    let bench = Bench::new(TREE);
+    bench.write("thesis.png", "forty pages of text");
+    for (output, code, word) in [
+        ("no/m.png", 3, "no such"),
+        ("m.rgg/m.png", 3, "m.rgg"),
+        ("thesis.png", 3, "not replaced"),
+        ("m.bmp", 2, ".png"),
+        ("m", 2, ".png"),
+    ] {
+        // So many steps that growth would not end: it must not begin.
+        let message = bench.fail(&format!("render m.rgg -o {output} --steps 1000000"), code);
+        assert!(message.contains(word), "{output}: {message}");
+    }
+    assert!(
+        bench
+            .fail("fly m.rgg --orbit -o m.mp4", 2)
+            .contains("not in this version")
+    );
+    assert!(bench.fail("fly m.rgg -o f", 2).contains("--orbit"));
+    assert_eq!(
+        text(&bytes(&bench.path("thesis.png"))),
+        "forty pages of text"
+    );
+    assert_eq!(bench.files().len(), 2);
+}
+
+#[test]
+fn senseless_wishes_are_usage_errors() {
+    let bench = Bench::new(TREE);
+    for (flags, word) in [
+        ("--samples 0", "from 1 up"),
+        ("--size 0x5", "WIDTHxHEIGHT"),
+        ("--size 1000000x1000000", "memory"),
+        ("--eye 1,NaN,2", "finite"),
+        ("--eye 1,2,3 --target 1,2,3", "same point"),
+        ("--eye 0,0,9 --target 0,0,0", "up"),
+        ("--fov 0", "more than 0"),
+        ("--fov 180", "less than 180"),
+        ("--threads 0", "1 to 1024"),
+        ("--renderer photon", "not built yet"),
+        ("--quality best", "draft"),
+        ("--sun 0,95", "0 to 90"),
+        ("--smaples 3", "--samples"),
+    ] {
+        let message = bench.fail(&format!("render m.rgg -o m.png {flags}"), 2);
+        assert!(message.contains(word), "{flags}: {message}");
+    }
+    assert!(
+        bench
+            .fail("fly m.rgg --orbit -o f --frames 5..2", 2)
+            .contains("A less than B")
+    );
+    assert_eq!(bench.files().len(), 1);
+}
+
+#[test]
+fn every_format_is_written_and_replaced() {
+    let bench = Bench::new(TREE);
+    for suffix in ["png", "jpg", "webp", "exr", "hdr"] {
+        for _ in 0..2 {
+            bench.succeed(&format!("render m.rgg -o m.{suffix} {SMALL} --quiet"));
+        }
+        let picture = image::open(bench.path(&format!("m.{suffix}")))
+            .unwrap()
+            .to_rgb32f();
+        assert_eq!(picture.dimensions(), (24, 16), "{suffix}");
+        let brightness: f32 = picture.as_raw().iter().sum();
+        assert!(brightness > 1.0, "{suffix}: daylight is dark");
+    }
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_a_byte() {
+    let bench = Bench::new(TREE);
+    for threads in 1..=3 {
+        let line = format!("render m.rgg -o t{threads}.png --steps 3 {SMALL} --threads {threads}");
+        bench.succeed(&line);
+    }
+    let first = bytes(&bench.path("t1.png"));
+    assert!(first == bytes(&bench.path("t2.png")) && first == bytes(&bench.path("t3.png")));
+    bench.succeed(&format!("render m.rgg -o s.png --steps 3 {SMALL} --seed 2"));
+    assert!(first != bytes(&bench.path("s.png")));
+}
+
+#[test]
+fn a_frame_is_the_same_whichever_part_of_the_flight_is_made() {
+    let bench = Bench::new(TREE);
+    let fly = format!("fly m.rgg --orbit --flight-frames 12 {SMALL}");
+    bench.succeed(&format!("{fly} --frames 0..6 -o all"));
+    bench.succeed(&format!("{fly} --frames 2..4 -o part"));
+    for frame in ["frame-000002.png", "frame-000003.png"] {
+        let all = bytes(&bench.path("all").join(frame));
+        assert!(all == bytes(&bench.path("part").join(frame)), "{frame}");
+    }
+    assert_eq!(fs::read_dir(bench.path("part")).unwrap().count(), 2);
+    let (one, two) = (
+        bench.path("all/frame-000000.png"),
+        bench.path("all/frame-000001.png"),
+    );
+    assert!(bytes(&one) != bytes(&two), "the camera does not move");
+}
+
+#[test]
+fn a_flight_goes_on_where_it_was_and_never_over_a_stranger() {
+    let bench = Bench::new(TREE);
+    let fly = format!("fly m.rgg --orbit --flight-frames 12 -o f {SMALL}");
+    bench.succeed(&format!("{fly} --frames 0..3"));
+    let whole = bytes(&bench.path("f/frame-000001.png"));
+    fs::write(bench.path("f/frame-000001.png"), &whole[..whole.len() / 2]).unwrap();
+    let output = bench.run(&format!("{fly} --frames 0..4"));
+    let message = text(&output.stderr);
+    assert!(message.contains("2 frames made, 2 kept"), "{message}");
+    assert!(bytes(&bench.path("f/frame-000001.png")) == whole);
+    let output = bench.run(&format!("{fly} --frames 0..2 --seed 5"));
+    assert!(
+        text(&output.stderr).contains("2 frames made ("),
+        "other options, other frames"
+    );
+    fs::write(bench.path("f/frame-000007.png"), "a diary").unwrap();
+    bench.fail(&format!("{fly} --frames 7..8"), 3);
+    assert_eq!(bytes(&bench.path("f/frame-000007.png")), b"a diary");
+}
+
+#[test]
+fn the_file_beside_the_model_counts_and_its_mistakes_are_shown() {
+    let bench = Bench::new(TREE);
+    bench.write(
+        "m.toml",
+        "steps = 2\n[render]\nsize = [20, 10]\nsamples = 3\n",
+    );
+    let text = bench.succeed("render m.rgg -o m.png --explain-options --samples 5");
+    let line = |key: &str| text.lines().find(|line| line.starts_with(key)).unwrap();
+    assert!(line("size").ends_with("m.toml:3"), "{text}");
+    assert!(line("samples").ends_with("command line"), "{text}");
+    assert!(line("fov").ends_with("default"), "{text}");
+    bench.succeed("render m.rgg -o m.png");
+    assert_eq!(
+        image::open(bench.path("m.png"))
+            .unwrap()
+            .to_rgb8()
+            .dimensions(),
+        (20, 10)
+    );
+    bench.write("m.toml", "steps = 2\n[render]\nsampels = 3\n");
+    let message = bench.fail("render m.rgg -o m.png", 1);
+    assert!(
+        message.contains("m.toml:3") && message.contains("`samples`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_report_tells_everything() {
+    let bench = Bench::new(TREE);
+    bench.succeed(&format!("render m.rgg -o m.png {SMALL} --report r.json"));
+    bench.succeed(&format!("render m.rgg -o m.png {SMALL} --report r.json"));
+    let report: serde_json::Value = serde_json::from_slice(&bytes(&bench.path("r.json"))).unwrap();
+    for phase in [
+        "read", "derive", "scene", "accel", "prepare", "render", "write",
+    ] {
+        assert!(report["seconds"][phase].is_f64(), "{phase}");
+    }
+    assert_eq!(report["samples_per_pixel"], 2);
+    assert!(report["rays"].as_u64().unwrap() >= 24 * 16 * 2);
+    assert_eq!(report["options"]["size"]["origin"], "command line");
+    assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+    bench.write("notes.json", "[1, 2, 3]");
+    let line = format!("render m.rgg -o m.png {SMALL} --report notes.json");
+    assert!(bench.fail(&line, 3).contains("not replaced"));
+}
+
+#[test]
+fn derive_prints_the_graph_and_writes_the_counts() {
+    let bench = Bench::new(TREE);
+    let counts = bench.succeed("derive m.rgg --steps 2 --print counts");
+    assert!(counts.contains("Bud") && counts.contains('4'), "{counts}");
+    assert!(
+        bench
+            .succeed("derive m.rgg --steps 1 --print string")
+            .contains("F(1")
+    );
+    bench.succeed("derive m.rgg --steps 2 --json c.json");
+    let json: serde_json::Value = serde_json::from_slice(&bytes(&bench.path("c.json"))).unwrap();
+    assert_eq!(
+        (&json["step"], &json["modules"]["Bud"]),
+        (&2.into(), &4.into()),
+        "{json:#}"
+    );
+    assert!(json["total"].as_u64().unwrap() > 4 && json["hash"].is_string());
+}
+
+#[test]
+fn what_a_model_prints_goes_where_it_belongs() {
+    let bench = Bench::new("protected void init() { println(\"hello \" + 6 * 7); }\n");
+    assert_eq!(bench.succeed("derive m.rgg --steps 0"), "hello 42\n");
+    let output = bench.run(&format!("render m.rgg -o m.png --steps 0 {SMALL}"));
+    assert_eq!(text(&output.stdout), "");
+    assert!(
+        text(&output.stderr).contains("hello 42"),
+        "{}",
+        text(&output.stderr)
+    );
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+    let bench = Bench::new(TREE);
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
+        .current_dir(bench.folder.path())
+        .args(["derive", "m.rgg", "--steps", "12", "--print", "tree"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(child.stdout.take().unwrap())
+        .read_line(&mut line)
+        .unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn quiet_is_quiet_and_help_is_help() {
+    let bench = Bench::new(TREE);
+    let output = bench.run(&format!("render m.rgg -o m.png {SMALL} --quiet"));
+    assert_eq!(
+        (text(&output.stdout), text(&output.stderr)),
+        (String::new(), String::new())
+    );
+    for command in ["check", "derive", "render", "watch", "fly"] {
+        let help = bench.succeed(&format!("{command} --help"));
+        assert!(help.contains("Example"), "{help}");
+    }
+    assert!(bench.succeed("--help").contains("Exit codes"));
+    assert!(
+        bench
+            .succeed("--version")
+            .contains(env!("CARGO_PKG_VERSION"))
+    );
+}
