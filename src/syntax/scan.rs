@@ -202,8 +202,18 @@ pub(super) fn is_word_start(c: char) -> bool {
     c.is_alphabetic() || c == '_' || c == '$'
 }
 
+/// Letters, digits, and accents that follow their letter, as macOS writes them.
 pub(super) fn is_word_part(c: char) -> bool {
-    c.is_alphanumeric() || c == '_' || c == '$'
+    c.is_alphanumeric() || c == '_' || c == '$' || ('\u{300}'..'\u{370}').contains(&c)
+}
+
+/// The bracket that closes the one `text` begins with.
+pub(super) fn closing(text: &str) -> &'static str {
+    match text.as_bytes().first() {
+        Some(b'(') => ")",
+        Some(b'[') => "]",
+        _ => "}",
+    }
 }
 
 fn number_len(rest: &str) -> usize {
@@ -225,8 +235,8 @@ fn number_len(rest: &str) -> usize {
 /// Counts how deep the text is nested: in brackets, and by statements, choices and functions without brackets.
 #[derive(Debug, Default)]
 struct Nesting {
-    /// For each open bracket, what is open in it without a bracket.
-    open: Vec<usize>,
+    /// Each open bracket by what closes it, and what is open in it without a bracket.
+    open: Vec<(&'static str, usize)>,
     /// What is open outside of all brackets without a bracket.
     outside: usize,
     /// Sum of all.
@@ -246,14 +256,10 @@ impl Nesting {
         }
         match (kind, text) {
             (TokenKind::Open, _) => {
-                self.open.push(0);
+                self.open.push((closing(text), 0));
                 self.depth += 1;
             }
-            (TokenKind::Close, _) => {
-                if let Some(chain) = self.open.pop() {
-                    self.depth -= chain + 1;
-                }
-            }
+            (TokenKind::Close, _) => self.close(text),
             (TokenKind::Word, "if" | "for" | "while" | "do") | (_, "?" | "=>") => {
                 self.change(|chain| chain + 1)
             }
@@ -263,8 +269,25 @@ impl Nesting {
         self.depth > MAX_NESTING && !std::mem::replace(&mut self.is_told, true)
     }
 
+    /// Closes a bracket and what was left open in it, so that missing brackets do not add up.
+    fn close(&mut self, text: &str) {
+        let near = self.open.len().saturating_sub(MAX_NESTING);
+        let at = self.open[near..]
+            .iter()
+            .rposition(|(closing, _)| *closing == text);
+        for (_, chain) in self
+            .open
+            .drain(at.map_or(self.open.len(), |at| near + at)..)
+        {
+            self.depth -= chain + 1;
+        }
+    }
+
     fn change(&mut self, how: impl Fn(usize) -> usize) {
-        let chain = self.open.last_mut().unwrap_or(&mut self.outside);
+        let chain = self
+            .open
+            .last_mut()
+            .map_or(&mut self.outside, |(_, chain)| chain);
         let old = std::mem::replace(chain, how(*chain));
         self.depth = self.depth - old + *chain;
     }

@@ -95,7 +95,8 @@ impl Reader<'_> {
         }
     }
 
-    fn is_too_long(&self, pair: &Pair<'_, Rule>) -> bool {
+    /// Whether a tree of the parts of `pair` would be too deep; says so.
+    pub(super) fn is_too_long(&self, pair: &Pair<'_, Rule>) -> bool {
         let (mut operators, mut nested) = (0, 0);
         for part in pair.clone().into_inner() {
             match part.as_rule() {

@@ -284,7 +284,6 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::params => method.params = kids(kid).map(|param| self.param(param)).collect(),
-                Rule::dim => method.result = method.result.map(|ty| with_dims(ty, 1)),
                 Rule::block => method.body = Some(self.block(kid)),
                 Rule::rules => {
                     let span = self.span(&kid);

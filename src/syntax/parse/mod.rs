@@ -30,7 +30,6 @@ mod grammar {
 
 /// What a piece of text should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(dead_code, reason = "next commit")]
 pub(super) enum Unit {
     /// A declaration, an import, or a stray `;`.
     Item,
@@ -95,7 +94,6 @@ impl<'s> Reader<'s> {
     }
 
     /// What was wrong with numbers, characters and sizes in what was read.
-    #[allow(dead_code, reason = "next commit")]
     pub(super) fn into_diagnostics(self) -> Diagnostics {
         self.diagnostics.into_inner()
     }

@@ -321,6 +321,9 @@ impl Reader<'_> {
         let span = self.span(&pair);
         let mut label: Option<Ident> = None;
         let mut expr = Self::broken(span);
+        if self.is_too_long(&pair) {
+            return RhsNode { label, expr, span };
+        }
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::label => label = Some(self.first_ident(&kid)),
