@@ -107,21 +107,13 @@ impl<'s> Renderer<'s> {
         labels.sort_by_key(|label| (label.span.file != primary.span.file, label.span));
         let labels = labels.into_iter().map(|label| {
             let is_primary = std::ptr::eq(label, primary);
-            let shown = ariadne::Label::new(place(label.span)).with_color(if is_primary {
-                color
-            } else {
-                Color::Cyan
-            });
-            // Without any words nothing would be underlined.
-            let text = if is_primary && label.text.is_empty() {
-                "here"
-            } else {
-                &label.text
-            };
-            if text.is_empty() {
-                shown
-            } else {
-                shown.with_message(text)
+            let color = if is_primary { color } else { Color::Cyan };
+            let shown = ariadne::Label::new(place(label.span)).with_color(color);
+            match label.text.as_str() {
+                // Without any words nothing would be underlined.
+                "" if is_primary => shown.with_message("here"),
+                "" => shown,
+                text => shown.with_message(text),
             }
         });
         let mut report = Report::build(kind, place(primary.span))

@@ -429,6 +429,10 @@ pub enum BinaryOp {
 
 /// Something inside `[ … ]` of a rule block.
 #[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "both are as frequent, and rule blocks are short"
+)]
 pub enum RuleItem {
     /// `lhs ==> rhs;`
     Rule(Box<Rule>),

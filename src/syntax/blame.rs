@@ -3,7 +3,8 @@
 use super::ast::File;
 use super::brackets::Brackets;
 use super::cut::{Cutter, Tokens};
-use super::explain::{Excerpt, Explanation, explain};
+use super::excerpt::Excerpt;
+use super::explain::{Explanation, explain};
 use super::parse::{Reach, Reader, Unit, reach};
 use super::scan::{MAX_NESTING, Problem, ProblemKind, Scan};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
@@ -121,6 +122,7 @@ fn foreign(span: Span, text: &str) -> Diagnostic {
         Some('→' | '⇒' | '⟶') => "write `==>`",
         Some('…') => "write three dots",
         Some('²' | '³') => "write `** 2` or `** 3`",
+        Some('#') => "remove it; blocks of scales, `{# … #}`, are not supported",
         _ => "remove it",
     };
     diagnostic.hint(instead)
@@ -178,6 +180,21 @@ impl Blamer<'_> {
         self.faulty.get(at).is_some_and(|&byte| byte < end)
     }
 
+    /// Adds a diagnostic, unless its line holds a problem of its own, of which it would only be a consequence.
+    fn add(&mut self, diagnostic: Diagnostic) {
+        let text = self.cutter.text;
+        let at = diagnostic
+            .primary
+            .as_ref()
+            .map_or(0, |label| label.span.start as usize);
+        let start = text[..at].rfind('\n').map_or(0, |end| end + 1);
+        let end = text[at..].find('\n').map_or(text.len(), |len| at + len);
+        let is_problem = |p: &Problem| (start..end).contains(&p.start);
+        if !self.cutter.scan.problems.iter().any(is_problem) {
+            self.found.push(diagnostic);
+        }
+    }
+
     /// Takes the cost of reading `len` bytes from the budget, if it suffices.
     fn afford(&mut self, len: usize) -> bool {
         let suffices = len <= self.budget;
@@ -202,7 +219,7 @@ impl Blamer<'_> {
         {
             let Explanation { diagnostic, rest } =
                 explain(self.file, &self.cutter, unit, tokens, &excerpt, byte);
-            self.found.push(diagnostic);
+            self.add(diagnostic);
             if let Some(rest) = rest.filter(|&rest| rest > tokens.start) {
                 end = rest.min(tokens.end);
             }
@@ -245,8 +262,7 @@ impl Blamer<'_> {
         }
         let excerpt = Excerpt::new(&self.cutter, tokens, &[]);
         if let Reach::Byte(byte) = reach(unit, &excerpt.text) {
-            self.found
-                .push(explain(self.file, &self.cutter, unit, tokens, &excerpt, byte).diagnostic);
+            self.add(explain(self.file, &self.cutter, unit, tokens, &excerpt, byte).diagnostic);
         }
     }
 }

@@ -91,7 +91,7 @@ impl<'t> Pairing<'t> {
                 TokenKind::Close => self.close(i, text),
                 TokenKind::Mark if text == ";" => self.end_parentheses(i),
                 TokenKind::Word if trusts_declarations && self.starts_declaration(token, text) => {
-                    self.give_up(0, i)
+                    self.give_up(0, i);
                 }
                 _ => {}
             }

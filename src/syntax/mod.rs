@@ -3,14 +3,16 @@
 //! [`scan`] cuts a text into words and brackets and finds what is wrong with those alone: unclosed strings, comments and
 //! brackets, foreign characters, absurd nesting. [`parse`](self::parse()) then reads the text with the grammar in
 //! `grammar/rgg.pest`. Only when that fails does [`blame`] look closer: it cuts the text into declarations, statements and
-//! rules ([`cut`]), reads each alone, and words one diagnostic for each that is broken ([`explain`]), so that one mistake
+//! rules ([`cut`]), reads each alone, and words one diagnostic for each that is broken ([`explain`], [`mistakes`]), so that one mistake
 //! does not hide the next.
 
 pub mod ast;
 mod blame;
 mod brackets;
 mod cut;
+mod excerpt;
 mod explain;
+mod mistakes;
 mod parse;
 #[cfg(test)]
 mod pretty;

@@ -70,9 +70,9 @@ impl Scan {
 }
 
 /// Marks of several characters, longer ones first where they begin alike; the others matter to nobody here.
-const MARKS: [&str; 22] = [
-    "==>>", "==>", "::>", "-->", "<--", "=>", "==", "!=", "<=", ">=", "&&", "||", "++", "--", "+=",
-    "-=", "*=", "/=", "%=", "**", ":=", "->",
+const MARKS: [&str; 23] = [
+    ":'=", "==>>", "==>", "::>", "-->", "<--", "=>", "==", "!=", "<=", ">=", "&&", "||", "++",
+    "--", "+=", "-=", "*=", "/=", "%=", "**", ":=", "->",
 ];
 
 /// Cuts `text` into tokens. Takes linear time.
@@ -261,7 +261,7 @@ impl Nesting {
             }
             (TokenKind::Close, _) => self.close(text),
             (TokenKind::Word, "if" | "for" | "while" | "do") | (_, "?" | "=>") => {
-                self.change(|chain| chain + 1)
+                self.change(|chain| chain + 1);
             }
             (_, ":") => self.change(|chain| chain.saturating_sub(1)),
             _ => {}

@@ -451,6 +451,9 @@ fn broken_models_get_precise_messages() {
         "no value\nvoid f() { x = a + ; y = * b; if a > b { } }",
         "words of other languages\nvoid f() { if (a and b) c(); }",
         "no semicolon at the end\nmodule A\nmodule B(int x) extends C(\nint x = 3",
+        "not supported\nvoid f() {\n\tx[v] :'= 3;\n\tC c = new C() { int a; };\n\ty = 1 +;\n}\nvoid g() [ A (? B) ==> C; A ==> {# B #}; ]",
+        "scales\nscaleclass Plant;",
+        "a rule without an arrow\nvoid f() [ A(x), (x > 3); A B; a:A b:B; ]",
         "broken inside of a module\nmodule A(int x) {\n\tint y = 3\n\tvoid f() { y = 4 }\n}\nmodule B;",
     ];
     for case in cases {
@@ -646,7 +649,7 @@ fn nesting_within_the_limit_is_read_fast() {
         ),
         format!("void f() [ {} ==> A; ]", nest("A [", "B", "]")),
         format!("int[] a = {};", nest("{", "1", "}")),
-        format!("{}", nest("module A { int x; ", "", "}")),
+        nest("module A { int x; ", "", "}"),
         format!("void f() {{ x = {}; }}", vec!["a < b"; 300].join(" && ")),
         format!("void f() {{ {} }}", "a < b; ".repeat(300)),
     ];

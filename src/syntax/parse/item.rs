@@ -2,6 +2,7 @@
 
 use super::grammar::Rule;
 use super::{Reader, kids};
+use crate::diag::{Diagnostic, Span};
 use crate::syntax::ast::{
     Block, Class, Expr, Extends, Field, Ident, Import, Item, Method, Modifiers, Module,
     ModuleParam, Param, Stmt, StmtKind, TypeRef,
@@ -50,13 +51,10 @@ impl Reader<'_> {
                     into.push(Item::Class(Box::new(class)));
                 }
                 Rule::initializer => {
-                    let body = kids(kid)
-                        .next()
-                        .map(|block| self.block(block))
-                        .unwrap_or_default();
+                    let body = kids(kid).map(|block| self.block(block)).next();
                     into.push(Item::Initializer {
                         is_static: modifiers.is_static,
-                        body,
+                        body: body.unwrap_or_default(),
                     });
                 }
                 Rule::constructor => {
@@ -96,11 +94,11 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::module_params => {
-                    module.params = kids(kid).map(|param| self.module_param(param)).collect()
+                    module.params = kids(kid).map(|param| self.module_param(param)).collect();
                 }
                 Rule::extends => module.extends = Some(self.extends(kid)),
                 Rule::implements => {
-                    module.implements = kids(kid).map(|ty| self.type_ref(ty)).collect()
+                    module.implements = kids(kid).map(|ty| self.type_ref(ty)).collect();
                 }
                 Rule::body => self.body(kid, &mut module.members),
                 Rule::instantiation => module.instantiation = Some(self.rhs(kid)),
@@ -180,7 +178,7 @@ impl Reader<'_> {
             match kid.as_rule() {
                 Rule::class_parents => class.extends = kids(kid).next().map(|ty| self.type_ref(ty)),
                 Rule::ident if kid.as_span().start() != name_start => {
-                    class.constants.push(self.ident(&kid))
+                    class.constants.push(self.ident(&kid));
                 }
                 Rule::item => self.item(kid, &mut class.members),
                 Rule::body => self.body(kid, &mut class.members),
@@ -196,6 +194,7 @@ impl Reader<'_> {
         let mut ty = None;
         for kid in kids(pair) {
             match kid.as_rule() {
+                Rule::type_ref if kid.as_str() == "scaleclass" => self.refuse_scales(span),
                 Rule::type_ref => ty = Some(self.type_ref(kid)),
                 Rule::method_rest => {
                     let method = Method {
@@ -222,6 +221,14 @@ impl Reader<'_> {
                 _ => {}
             }
         }
+    }
+
+    /// `scaleclass Plant;` looks like a field; nothing else in a model of several scales can be told so early.
+    fn refuse_scales(&self, span: Span) {
+        let message = "scales (`scaleclass`) are not supported";
+        let hint =
+            "write one module for each scale, and link their nodes by edges of their own kind";
+        self.report(Diagnostic::error("unsupported", span, message).hint(hint));
     }
 
     /// Adds the fields of one declaration, of which `first` is the first without its dimensions and value.

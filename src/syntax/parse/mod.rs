@@ -302,12 +302,12 @@ mod tests {
             let Some(&start) = Rule::all_rules().iter().find(|r| format!("{r:?}") == name) else {
                 continue;
             };
+            let is_silent = GRAMMAR.contains(&format!("\n{name} = _"));
             match Rgg::parse(start, example) {
                 Ok(mut pairs) => {
                     let read = pairs.next().map_or(0, |pair| pair.as_span().end());
                     assert!(
-                        read == example.len()
-                            || format!("{GRAMMAR}").contains(&format!("{name} = _")),
+                        is_silent || read == example.len(),
                         "`{name}` reads {read} bytes of `{example}`"
                     );
                 }

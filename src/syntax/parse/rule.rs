@@ -41,7 +41,7 @@ impl Reader<'_> {
                 Rule::arrow => rule.arrow = Arrow::Spo,
                 Rule::execution_arrow => rule.arrow = Arrow::Execution,
                 _ if rule.arrow == Arrow::Execution => {
-                    rule.exec = Some(Box::new(self.statement(kid)))
+                    rule.exec = Some(Box::new(self.statement(kid)));
                 }
                 _ => rule.rhs.push(self.rhs_item(kid)),
             }
@@ -100,7 +100,7 @@ impl Reader<'_> {
             match part {
                 PatternPart::Path(items) if own.is_none() => own = Some(items),
                 PatternPart::Path(items) => {
-                    parts.push(PatternPart::Path(vec![PatternItem::Context(items)]))
+                    parts.push(PatternPart::Path(vec![PatternItem::Context(items)]));
                 }
                 PatternPart::Condition(cond) => parts.push(PatternPart::Condition(cond)),
             }
