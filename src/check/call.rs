@@ -267,44 +267,7 @@ impl Checker<'_> {
             }
         }
         if overloads.is_empty() {
-            if self.refused.contains(owner) {
-                return None;
-            }
-            let fault = if self.is_known_qualifier(owner) {
-                let fault = Diagnostic::error(
-                    "unknown-function",
-                    member.span,
-                    format!("`{owner}` has no function `{name}`"),
-                );
-                let known = FunctionId::ALL
-                    .iter()
-                    .map(|f| f.signature())
-                    .filter(|row| row.owner == owner);
-                self.did_you_mean(fault, name, known.map(|row| row.name))
-            } else if let Some(hint) = super::refuse::type_hint(owner) {
-                Diagnostic::error(
-                    "unsupported-type",
-                    owner_span,
-                    format!("`{owner}` is not supported"),
-                )
-                .hint(hint)
-            } else {
-                let fault = Diagnostic::error(
-                    "unknown-name",
-                    owner_span,
-                    format!("unknown variable `{owner}`"),
-                );
-                let locals = self.cx.local_names();
-                let known = locals
-                    .iter()
-                    .map(String::as_str)
-                    .chain(self.files.iter().map(|f| f.name.as_str()));
-                self.did_you_mean(
-                    fault.label("no such variable, file or class"),
-                    owner,
-                    known.chain(["Math", "System"]),
-                )
-            };
+            let fault = self.unknown_static_function(owner, owner_span, member)?;
             self.report(fault);
             return None;
         }
@@ -342,36 +305,39 @@ impl Checker<'_> {
                     span,
                 })
             }
-            Callee::Method(id) => {
-                let method = &self.methods[id.0 as usize];
-                let (result, is_static) = (method.result.clone(), method.is_static);
-                let is_abstract = self.is_abstract(id);
-                self.cx.facts.runs.push(Body::Method(id));
-                if !is_virtual && is_abstract {
-                    let message = format!(
-                        "`{}` is abstract in the parent",
-                        self.methods[id.0 as usize].name
-                    );
-                    self.report(Diagnostic::error("abstract-method", span, message));
-                    return None;
-                }
-                let receiver = if is_static {
-                    None
-                } else {
-                    receiver.map(Box::new)
-                };
-                let kind = ExprKind::Call {
-                    method: id,
-                    receiver,
-                    args,
-                    is_virtual: is_virtual && !is_static,
-                };
-                Some(Expr {
-                    kind,
-                    ty: result?,
-                    span,
-                })
-            }
+            Callee::Method(id) => self.apply_method(id, receiver, args, is_virtual, span),
         }
+    }
+
+    /// A call of a method of the model.
+    fn apply_method(
+        &mut self,
+        id: MethodId,
+        receiver: Option<Expr>,
+        args: Vec<Expr>,
+        is_virtual: bool,
+        span: Span,
+    ) -> Option<Expr> {
+        let method = &self.methods[id.0 as usize];
+        let (name, result, is_static) = (method.name, method.result.clone(), method.is_static);
+        self.cx.facts.runs.push(Body::Method(id));
+        if !is_virtual && self.is_abstract(id) {
+            let message = format!("`{name}` is abstract in the parent");
+            self.report(Diagnostic::error("abstract-method", span, message));
+            return None;
+        }
+        let receiver = receiver.filter(|_| !is_static).map(Box::new);
+        let is_virtual = is_virtual && !is_static;
+        let kind = ExprKind::Call {
+            method: id,
+            receiver,
+            args,
+            is_virtual,
+        };
+        Some(Expr {
+            kind,
+            ty: result?,
+            span,
+        })
     }
 }

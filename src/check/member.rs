@@ -204,32 +204,7 @@ impl Checker<'_> {
             return None;
         }
         if !self.is_known_qualifier(owner) {
-            if let Some(hint) = super::refuse::type_hint(owner) {
-                let message = format!("`{owner}` is not supported");
-                return Some(Diagnostic::error("unsupported-type", owner_span, message).hint(hint));
-            }
-            let fault = Diagnostic::error(
-                "unknown-name",
-                owner_span,
-                format!("unknown variable `{owner}`"),
-            );
-            let locals = self.cx.local_names();
-            let statics = self.statics.iter().map(|s| s.name);
-            let files = self.files.iter().map(|f| f.name.as_str());
-            let owners = [
-                "Math", "System", "Integer", "Long", "Float", "Double", "String",
-            ];
-            let all = locals
-                .iter()
-                .map(String::as_str)
-                .chain(statics)
-                .chain(files)
-                .chain(owners);
-            return Some(self.did_you_mean(
-                fault.label("no such variable, file or class"),
-                owner,
-                all,
-            ));
+            return Some(self.unknown_owner(owner, owner_span));
         }
         let fault = Diagnostic::error(
             "unknown-member",

@@ -153,4 +153,47 @@ impl Checker<'_> {
             known.chain(super::aggregate::NAMES.iter().copied()),
         ))
     }
+
+    /// The fault of `owner.name(…)` that means nothing; `None` if the owner was refused before.
+    pub(super) fn unknown_static_function(
+        &self,
+        owner: &str,
+        owner_span: Span,
+        member: &ast::Ident,
+    ) -> Option<Diagnostic> {
+        if self.refused.contains(owner) {
+            return None;
+        }
+        if self.is_known_qualifier(owner) {
+            let message = format!("`{owner}` has no function `{}`", member.name);
+            let fault = Diagnostic::error("unknown-function", member.span, message);
+            let rows = FunctionId::ALL.iter().map(|f| f.signature());
+            let known = rows.filter(|row| row.owner == owner).map(|row| row.name);
+            return Some(self.did_you_mean(fault, &member.name, known));
+        }
+        Some(self.unknown_owner(owner, owner_span))
+    }
+
+    /// The fault of what stands in front of a dot and is no variable, file or class.
+    pub(super) fn unknown_owner(&self, owner: &str, span: Span) -> Diagnostic {
+        if let Some(hint) = super::refuse::type_hint(owner) {
+            let message = format!("`{owner}` is not supported");
+            return Diagnostic::error("unsupported-type", span, message).hint(hint);
+        }
+        let message = format!("unknown variable `{owner}`");
+        let fault = Diagnostic::error("unknown-name", span, message);
+        let locals = self.cx.local_names();
+        let statics = self.statics.iter().map(|s| s.name);
+        let files = self.files.iter().map(|f| f.name.as_str());
+        let classes = [
+            "Math", "System", "Integer", "Long", "Float", "Double", "String",
+        ];
+        let known = locals
+            .iter()
+            .map(String::as_str)
+            .chain(statics)
+            .chain(files)
+            .chain(classes);
+        self.did_you_mean(fault.label("no such variable, file or class"), owner, known)
+    }
 }

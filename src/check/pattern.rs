@@ -47,6 +47,15 @@ struct At {
     default: EdgeKind,
 }
 
+/// What the next node is linked from.
+#[derive(Default)]
+struct Cursor<'i> {
+    /// The node before.
+    previous: Option<usize>,
+    /// The edge written after it.
+    edge: Option<&'i ast::EdgePattern>,
+}
+
 impl Checker<'_> {
     /// Checks a pattern; its labels and variables go into the innermost block.
     pub(super) fn pattern(&mut self, pattern: &ast::Pattern) -> Option<Checked> {
@@ -60,7 +69,7 @@ impl Checker<'_> {
                         in_branch: false,
                         default: EdgeKind::Successor,
                     };
-                    self.path(&mut builder, items, at, &mut None, &mut None);
+                    self.whole_path(&mut builder, items, at, Cursor::default());
                 }
                 PatternPart::Condition(condition) => {
                     conditions.extend(self.condition(&builder, condition));
@@ -100,54 +109,55 @@ impl Checker<'_> {
         })
     }
 
-    /// Adds a row of nodes. `previous` is the node before, `edge` an edge written after it.
-    fn path<'i>(
+    /// Adds a row of nodes that ends here: at the end of a part or of a branch.
+    fn whole_path<'i>(
         &mut self,
         builder: &mut Builder,
         items: &'i [PatternItem],
         at: At,
-        previous: &mut Option<usize>,
-        edge: &mut Option<&'i ast::EdgePattern>,
+        mut cursor: Cursor<'i>,
     ) {
-        let mut default = at.default;
+        self.path(builder, items, at, &mut cursor);
+        if let Some(edge) = cursor.edge {
+            self.report_loose_edge(builder, edge.span);
+        }
+    }
+
+    /// Adds a row of nodes and leaves the cursor behind them.
+    fn path<'i>(
+        &mut self,
+        builder: &mut Builder,
+        items: &'i [PatternItem],
+        mut at: At,
+        cursor: &mut Cursor<'i>,
+    ) {
         for item in items {
             match item {
                 PatternItem::Node(node) => {
-                    let Some(index) = self.pattern_node(builder, node, at) else {
-                        builder.is_wrong = true;
-                        (*previous, *edge) = (None, None);
-                        continue;
-                    };
-                    if let Some(from) = *previous {
-                        self.pattern_edge(builder, from, index, edge.take(), default);
-                    } else if let Some(edge) = edge.take() {
-                        self.report_loose_edge(builder, edge.span);
-                    }
-                    (*previous, default) = (Some(index), EdgeKind::Successor);
+                    self.linked_node(builder, node, at, cursor);
+                    at.default = EdgeKind::Successor;
                 }
                 PatternItem::Edge(written) => {
-                    if previous.is_none() && !builder.is_wrong || edge.is_some() {
+                    let is_loose = cursor.previous.is_none() && !builder.is_wrong;
+                    if is_loose || cursor.edge.is_some() {
                         self.report_loose_edge(builder, written.span);
                     }
-                    *edge = Some(written);
+                    cursor.edge = Some(written);
                 }
                 PatternItem::Branch(items) => {
-                    if previous.is_none() && !builder.is_wrong {
-                        let fault = Diagnostic::error(
-                            "loose-branch",
-                            first_span(items),
-                            "a branch needs a node before it",
-                        );
-                        self.report(fault.hint("write `. [ … ]` for a branch of any node"));
-                        builder.is_wrong = true;
+                    if cursor.previous.is_none() && !builder.is_wrong {
+                        self.report_loose_branch(builder, first_span(items));
                     }
-                    let at = At {
+                    let inner = At {
                         in_branch: true,
                         default: EdgeKind::Branch,
                         ..at
                     };
-                    let mut inner_edge = edge.take();
-                    self.path(builder, items, at, &mut previous.clone(), &mut inner_edge);
+                    let start = Cursor {
+                        previous: cursor.previous,
+                        edge: cursor.edge.take(),
+                    };
+                    self.whole_path(builder, items, inner, start);
                 }
                 PatternItem::Context(items) => {
                     self.path(
@@ -155,21 +165,41 @@ impl Checker<'_> {
                         items,
                         At {
                             is_context: true,
-                            default,
                             ..at
                         },
-                        previous,
-                        edge,
+                        cursor,
                     );
-                    default = EdgeKind::Successor;
+                    at.default = EdgeKind::Successor;
                 }
             }
         }
-        if !at.is_context
-            && let Some(edge) = edge.take()
-        {
-            self.report_loose_edge(builder, edge.span);
+    }
+
+    /// Adds a node and the edge from the one before it.
+    fn linked_node(
+        &mut self,
+        builder: &mut Builder,
+        node: &ast::NodePattern,
+        at: At,
+        cursor: &mut Cursor<'_>,
+    ) {
+        let Some(index) = self.pattern_node(builder, node, at) else {
+            builder.is_wrong = true;
+            *cursor = Cursor::default();
+            return;
+        };
+        match (cursor.previous, cursor.edge.take()) {
+            (Some(from), edge) => self.pattern_edge(builder, from, index, edge, at.default),
+            (None, Some(edge)) => self.report_loose_edge(builder, edge.span),
+            (None, None) => {}
         }
+        cursor.previous = Some(index);
+    }
+
+    fn report_loose_branch(&mut self, builder: &mut Builder, span: Span) {
+        builder.is_wrong = true;
+        let fault = Diagnostic::error("loose-branch", span, "a branch needs a node before it");
+        self.report(fault.hint("write `. [ … ]` for a branch of any node"));
     }
 
     fn report_loose_edge(&mut self, builder: &mut Builder, span: Span) {

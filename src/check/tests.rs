@@ -696,3 +696,18 @@ proptest::proptest! {
         check_text(&words.concat());
     }
 }
+
+#[test]
+fn the_abop_models_are_accepted() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/abop");
+    let mut n_checked = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|suffix| suffix == "rgg") {
+            let (_, errors) = check_text(&std::fs::read_to_string(&path).unwrap());
+            assert!(errors.is_empty(), "{}: {errors:#?}", path.display());
+            n_checked += 1;
+        }
+    }
+    assert!(n_checked >= 10, "{n_checked}");
+}
