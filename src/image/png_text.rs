@@ -3,7 +3,7 @@
 //! Only the container is read and written here (length, type, data, check sum of each chunk); the texts are international
 //! ones (`iTXt`, UTF-8, not compressed), right after the header.
 //!
-//! Source: [PNG3] §5 (chunks), §11.3.3 (texts), Annex D (check sum).
+//! Source: [PNG3](crate::references#png3) §5 (chunks), §11.3.3 (texts), Annex D (check sum).
 
 /// Bytes before the first chunk.
 const SIGNATURE: &[u8] = b"\x89PNG\r\n\x1a\n";

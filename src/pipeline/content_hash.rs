@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A 128-bit FNV-1a hash. Tells changed contents from equal ones; no protection against people who forge.
 ///
-/// Source: [FNV] (128-bit prime and offset basis).
+/// Source: [FNV](crate::references#fnv) (128-bit prime and offset basis).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ContentHash(u128);
 
