@@ -12,6 +12,7 @@ use glam::DVec3;
 /// A line prepared for tests against flat shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Shear {
+    /// Start of the line, in the order of `axes`.
     origin: [f64; 3],
     axes: [usize; 3],
     /// Shear of x and y per unit of z, and 1 / (z of the direction).
@@ -44,7 +45,7 @@ impl Shear {
         };
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         Self {
-            origin: line.origin.to_array(),
+            origin: [line.origin[x], line.origin[y], line.origin[z]],
             axes: [x, y, z],
             shear: [d[x] / d[z], d[y] / d[z], 1.0 / d[z]],
         }
@@ -52,13 +53,12 @@ impl Shear {
 
     /// A point in the frame where the line is the z axis; z is still in units of the coordinate.
     #[inline]
-    fn apply(&self, point: DVec3) -> [f64; 3] {
-        let p = point.to_array();
+    fn apply(&self, point: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes;
-        let depth = p[z] - self.origin[z];
+        let depth = point[z] - self.origin[2];
         [
-            (p[x] - self.origin[x]) - self.shear[0] * depth,
-            (p[y] - self.origin[y]) - self.shear[1] * depth,
+            (point[x] - self.origin[0]) - self.shear[0] * depth,
+            (point[y] - self.origin[1]) - self.shear[1] * depth,
             depth,
         ]
     }
@@ -81,7 +81,7 @@ fn agree<const N: usize>(values: [f64; N]) -> bool {
 #[must_use]
 pub fn intersect_triangle(
     shear: &Shear,
-    corners: [DVec3; 3],
+    corners: [&[f64; 3]; 3],
     interval: Interval,
 ) -> Option<FlatHit> {
     let [a, b, c] = corners.map(|corner| shear.apply(corner));
@@ -114,10 +114,10 @@ pub fn intersect_parallelogram(
     edges: [DVec3; 2],
     interval: Interval,
 ) -> Option<FlatHit> {
-    let a = shear.apply(corner);
-    let b = shear.apply(corner + edges[0]);
-    let c = shear.apply(corner + edges[0] + edges[1]);
-    let d = shear.apply(corner + edges[1]);
+    let a = shear.apply(corner.as_ref());
+    let b = shear.apply((corner + edges[0]).as_ref());
+    let c = shear.apply((corner + edges[0] + edges[1]).as_ref());
+    let d = shear.apply((corner + edges[1]).as_ref());
 
     // Opposite edge functions add up to the area, so each pair gives one coordinate.
     let around = [edge(a, b), edge(b, c), edge(c, d), edge(d, a)];
@@ -137,6 +137,14 @@ pub fn intersect_parallelogram(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn triangle(shear: &Shear, corners: [DVec3; 3], interval: Interval) -> Option<FlatHit> {
+        intersect_triangle(
+            shear,
+            corners.each_ref().map(|corner| corner.as_ref()),
+            interval,
+        )
+    }
 
     const ALL: Interval = Interval {
         after: 0.0,
@@ -167,7 +175,7 @@ mod tests {
                 origin,
                 direction: (target - origin) / 4.0,
             };
-            let hit = intersect_triangle(&Shear::new(&line), corners, ALL).unwrap();
+            let hit = triangle(&Shear::new(&line), corners, ALL).unwrap();
             assert!((hit.t - 4.0).abs() < 1e-12 && (hit.u - 0.3).abs() < 1e-12);
             assert!((hit.v - 0.5).abs() < 1e-12, "{hit:?}");
         }
@@ -182,17 +190,14 @@ mod tests {
                 for at in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.5], [0.5, 0.0]] {
                     let line = line([at[0], at[1], -down], [zero, -zero, down]);
                     let shear = Shear::new(&line);
-                    assert!(
-                        intersect_triangle(&shear, corners, ALL).is_some(),
-                        "{line:?}"
-                    );
+                    assert!(triangle(&shear, corners, ALL).is_some(), "{line:?}");
                     let hit = intersect_parallelogram(&shear, quad.0, quad.1, ALL).unwrap();
                     assert_eq!((hit.t, hit.u, hit.v), (1.0, at[0], at[1]));
                 }
             }
         }
         let beside = line([0.6, 0.6, 1.0], [0.0, 0.0, -1.0]);
-        assert!(intersect_triangle(&Shear::new(&beside), corners, ALL).is_none());
+        assert!(triangle(&Shear::new(&beside), corners, ALL).is_none());
     }
 
     #[test]
@@ -200,12 +205,12 @@ mod tests {
         let down = Shear::new(&line([0.5, 0.0, 1.0], [0.0, 0.0, -1.0]));
         let along = Shear::new(&line([-1.0, 0.2, 0.0], [1.0, 0.0, 0.0]));
         assert_eq!(
-            intersect_triangle(&down, [DVec3::ZERO, DVec3::X, DVec3::X * 2.0], ALL),
+            triangle(&down, [DVec3::ZERO, DVec3::X, DVec3::X * 2.0], ALL),
             None
         );
-        assert_eq!(intersect_triangle(&down, [DVec3::X; 3], ALL), None);
+        assert_eq!(triangle(&down, [DVec3::X; 3], ALL), None);
         assert_eq!(
-            intersect_triangle(&along, [DVec3::ZERO, DVec3::X, DVec3::Y], ALL),
+            triangle(&along, [DVec3::ZERO, DVec3::X, DVec3::Y], ALL),
             None
         );
         assert_eq!(
@@ -218,8 +223,8 @@ mod tests {
     fn the_interval_is_open_below_and_closed_above() {
         let corners = [DVec3::NEG_ONE, DVec3::X * 4.0, DVec3::Y * 4.0];
         let shear = Shear::new(&line([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]));
-        let t = intersect_triangle(&shear, corners, ALL).unwrap().t;
-        let test = |after, until| intersect_triangle(&shear, corners, Interval { after, until });
+        let t = triangle(&shear, corners, ALL).unwrap().t;
+        let test = |after, until| triangle(&shear, corners, Interval { after, until });
         assert!(test(t, f64::INFINITY).is_none() && test(0.0, t).is_some());
         assert!(test(0.0, t * 0.999).is_none());
     }

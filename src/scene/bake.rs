@@ -226,7 +226,9 @@ fn store_mesh(
         return;
     };
     let offset = group.vertices.len() as u32;
-    group.vertices.extend_from_slice(corners);
+    group
+        .vertices
+        .extend(corners.iter().map(|corner| corner.to_array()));
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
         // Without area it can neither be hit nor shine.
@@ -332,6 +334,29 @@ fn arrange(group: &mut Group, built: &[Group]) {
             group.places[number as usize] = Some(item);
         }
     }
+    renumber_vertices(group);
+}
+
+/// Puts the corners into the order in which the triangles mention them, so that what is tested together lies together.
+/// Corners that no triangle has are dropped.
+fn renumber_vertices(group: &mut Group) {
+    const NEW: u32 = u32::MAX;
+    let mut places = vec![NEW; group.vertices.len()];
+    let mut vertices = Vec::with_capacity(group.vertices.len());
+    for corner in group
+        .triangles
+        .iter_mut()
+        .flat_map(|triangle| &mut triangle.corners)
+    {
+        let place = &mut places[*corner as usize];
+        if *place == NEW {
+            *place = vertices.len() as u32;
+            vertices.push(group.vertices[*corner as usize]);
+        }
+        *corner = *place;
+    }
+    vertices.shrink_to_fit();
+    group.vertices = vertices;
 }
 
 /// Numbers the primitives of the instances after the group's own, in the order of the leaves.

@@ -43,7 +43,8 @@ pub(super) struct Group {
     pub(super) frame: GroupFrame,
     /// The box of everything in it, widened like all stored boxes; empty if it holds nothing.
     pub(super) bounds: Bounds3,
-    pub(super) vertices: Vec<DVec3>,
+    /// Corners of triangles, in the order in which the leaves mention them.
+    pub(super) vertices: Vec<[f64; 3]>,
     pub(super) triangles: Vec<Triangle>,
     pub(super) quads: Vec<Quad>,
     pub(super) solids: Vec<Solid>,
@@ -178,11 +179,10 @@ impl Group {
     }
 
     /// The corners of a triangle.
-    #[inline]
     pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
         triangle
             .corners
-            .map(|corner| self.vertices[corner as usize])
+            .map(|corner| DVec3::from_array(self.vertices[corner as usize]))
     }
 
     /// Memory it occupies, in bytes.

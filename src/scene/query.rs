@@ -263,7 +263,9 @@ impl<S: Sink> Walk<'_, '_, S> {
         match item.kind() {
             ItemKind::Triangle(index) => {
                 let triangle = &place.group.triangles[index];
-                let corners = place.group.corners(triangle);
+                let corners = triangle
+                    .corners
+                    .map(|corner| &place.group.vertices[corner as usize]);
                 match intersect_triangle(&prepared.shear, corners, interval) {
                     Some(hit) => self.take_flat(place, triangle.number, hit),
                     None => ControlFlow::Continue(()),
