@@ -5,7 +5,6 @@ mod worlds;
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
-use std::sync::Arc;
 use understory::color::Rgb;
 use understory::geometry::{Shape, TriangleMesh};
 use understory::material::Material;
@@ -1010,11 +1009,17 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn an_instance_costs_less_than_two_hundred_bytes() {
-    let scene = Scene::build(describe(forest(&mut Random(57), 20_000))).unwrap();
-    let stats = scene.stats();
+fn an_instance_of_a_forest_costs_little_memory() {
+    let mut random = Random(57);
+    let mut groups = forest(&mut random, 0);
+    let turned = |k: u32| {
+        let turn = DAffine3::from_axis_angle(random.direction(), random.between(0.0, 6.0));
+        let at = DAffine3::from_translation(random.in_cube() * DVec3::new(1e3, 1e3, 1.0));
+        let scale = DAffine3::from_scale(DVec3::splat(random.between(-1.5, -0.5)));
+        instance(1, at * turn * scale, k)
+    };
+    groups[3].instances = (0..20_000).map(turned).collect();
+    let stats = Scene::build(describe(groups)).unwrap().stats();
     let each = stats.instance_bytes / stats.instances;
-    assert!(each < 200, "{each}");
-    let shared = Arc::new(icosphere(2, 1.0));
-    assert!(stats.bytes > size_of_val(&*shared.positions));
+    assert!(each <= 125 && stats.instances == 20_000, "{each}");
 }

@@ -124,7 +124,7 @@ fn grow(entries: &mut [Entry], whole: Set, leaf_size: usize) -> Tree {
     // Split the largest set until there are eight.
     let mut sets = vec![Set { first: 0, ..whole }];
     while sets.len() < WIDTH {
-        let Some(largest) = largest_splittable(&sets, leaf_size) else {
+        let Some(largest) = next_to_split(&sets, whole.count, leaf_size) else {
             break;
         };
         let set = sets[largest];
@@ -166,18 +166,27 @@ fn grow(entries: &mut [Entry], whole: Set, leaf_size: usize) -> Tree {
     Tree { children }
 }
 
-/// The set with the largest area, and among equals the largest number, that is too large for a leaf.
-fn largest_splittable(sets: &[Set], leaf_size: usize) -> Option<usize> {
+/// The set to split next: of those too large for a leaf the one with the largest area. When all are small enough, the
+/// places left in the node are filled by splitting further, which costs no memory and tests fewer items.
+///
+/// If all boxes could be in leaves of this node, the largest number counts before the area: then the nodes at the bottom,
+/// which are most of all nodes, are well filled.
+fn next_to_split(sets: &[Set], total: usize, leaf_size: usize) -> Option<usize> {
+    let is_bottom = total <= WIDTH * WIDTH * leaf_size;
     let by_size = |a: &usize, b: &usize| {
         let (a, b) = (&sets[*a], &sets[*b]);
-        a.bounds
-            .half_area()
-            .total_cmp(&b.bounds.half_area())
-            .then(a.count.cmp(&b.count))
+        let count = a.count.cmp(&b.count);
+        let area = a.bounds.half_area().total_cmp(&b.bounds.half_area());
+        if is_bottom {
+            count.then(area)
+        } else {
+            area.then(count)
+        }
     };
-    (0..sets.len())
-        .filter(|index| sets[*index].count > leaf_size)
+    let above = |size: usize| (0..sets.len()).filter(move |index| sets[*index].count > size);
+    above(leaf_size)
         .max_by(by_size)
+        .or_else(|| above(1).max_by(by_size))
 }
 
 /// Splits a set of at least two entries into two that are not empty.

@@ -118,24 +118,30 @@ impl Node {
             }
         }
 
+        let mut lanes = 0_u32;
+        for lane in 0..WIDTH {
+            lanes |= u32::from(enter[lane] <= exit[lane]) << lane;
+        }
+
         // Sort the entered children in; there are rarely more than three.
         let mut entered = [Waiting::default(); WIDTH];
         let mut count = 0;
-        for lane in 0..WIDTH {
-            if enter[lane] <= exit[lane] {
-                let child = self.children[lane];
-                let mut at = count;
-                while at > 0 && entered[at - 1].enter < enter[lane] {
-                    entered[at] = entered[at - 1];
-                    at -= 1;
-                }
-                entered[at] = Waiting {
-                    enter: enter[lane],
-                    first: child.first,
-                    count: child.count,
-                };
-                count += 1;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros() as usize % WIDTH;
+            lanes &= lanes - 1;
+            let child = self.children[lane];
+            let waiting = Waiting {
+                enter: enter[lane],
+                first: child.first,
+                count: child.count,
+            };
+            let mut at = count;
+            while at > 0 && entered[at - 1].enter < waiting.enter {
+                entered[at] = entered[at - 1];
+                at -= 1;
             }
+            entered[at] = waiting;
+            count += 1;
         }
         for waiting in &entered[..count] {
             stack.push(*waiting);

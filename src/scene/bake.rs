@@ -4,6 +4,7 @@ use super::error::{Problem, SceneError};
 use super::group::{
     Group, GroupFrame, Item, ItemKind, MeshShading, PlacedGroup, Quad, ShapeRecord, Solid, Triangle,
 };
+use super::placement::Placement;
 use super::plan::{PlannedGroup, PlannedShape, primitive_count};
 use super::validate::{check_bounds, check_shape};
 use crate::accel::{self, Box3};
@@ -16,7 +17,7 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 /// Boxes per leaf in a group without instances, and with them. An instance is dear to enter, a primitive cheap to test.
-const LEAF_SIZES: [usize; 2] = [4, 1];
+const LEAF_SIZES: [usize; 2] = [4, 4];
 
 /// Builds a group whose instances refer to groups in `built`.
 pub(super) fn bake(
@@ -48,6 +49,7 @@ fn empty_group(frame: GroupFrame) -> Group {
         quads: Vec::new(),
         solids: Vec::new(),
         instances: Vec::new(),
+        matrices: Vec::new(),
         items: Vec::new(),
         places: Vec::new(),
         shapes: Vec::new(),
@@ -271,8 +273,9 @@ fn store_instances(
                 problem,
             });
         }
+        let placement = Placement::new(&to_child, &mut group.matrices);
         group.instances.push(PlacedGroup {
-            to_child,
+            placement,
             first: 0,
             group: instance.group as u32,
             organ: instance.organ,
@@ -394,7 +397,7 @@ fn boxes(group: &Group, built: &[Group]) -> Vec<Box3> {
     let instances = group.instances.par_iter().map(|instance| {
         built[instance.group as usize]
             .bounds
-            .transformed(&instance.to_child.inverse())
+            .transformed(&group.to_child(instance).inverse())
     });
     triangles
         .chain(quads)

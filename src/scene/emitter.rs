@@ -274,7 +274,7 @@ pub(super) fn collect(scene: &Scene) -> Result<Vec<Emitter>, SceneError> {
         }
         for instance in &group.instances {
             if holds_light[instance.group as usize] {
-                let to_world = to_world * instance.to_child.inverse();
+                let to_world = to_world * group.to_child(instance).inverse();
                 open.push((instance.group as usize, first + instance.first, to_world));
             }
         }

@@ -1,6 +1,7 @@
 //! A group as rays see it: its primitives in a frame of its own, and a hierarchy over them.
 
 use super::description::{MaterialId, OrganId};
+use super::placement::Placement;
 use crate::accel::Bvh;
 use crate::geometry::TriangleMesh;
 use crate::geometry::unit::UnitShape;
@@ -49,6 +50,8 @@ pub(super) struct Group {
     pub(super) quads: Vec<Quad>,
     pub(super) solids: Vec<Solid>,
     pub(super) instances: Vec<PlacedGroup>,
+    /// Of instances that are stretched unevenly.
+    pub(super) matrices: Vec<DMat3>,
     /// What the leaves of `bvh` hold, in their order.
     pub(super) items: Vec<Item>,
     /// Where each primitive of this group is stored, by number; `None` if it has no area.
@@ -132,8 +135,8 @@ pub(super) struct Solid {
 /// Another group, placed in this one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PlacedGroup {
-    /// From this group's frame to that group's.
-    pub(super) to_child: DAffine3,
+    /// From this group's frame to that group's; read it with [`Group::to_child`].
+    pub(super) placement: Placement,
     /// Number, in this group, of the placed group's first primitive.
     pub(super) first: u64,
     /// Which group, by its place in the scene.
@@ -178,6 +181,12 @@ impl Group {
         &self.instances[after.saturating_sub(1)]
     }
 
+    /// From this group's frame to that of one of its instances.
+    #[inline]
+    pub(super) fn to_child(&self, instance: &PlacedGroup) -> DAffine3 {
+        instance.placement.map(&self.matrices)
+    }
+
     /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
         triangle
@@ -193,6 +202,7 @@ impl Group {
             + size_of_val(&*self.quads)
             + size_of_val(&*self.solids)
             + size_of_val(&*self.instances)
+            + size_of_val(&*self.matrices)
             + size_of_val(&*self.items)
             + size_of_val(&*self.places)
             + size_of_val(&*self.shapes)

@@ -44,6 +44,7 @@ pub mod description;
 mod emitter;
 mod error;
 mod group;
+mod placement;
 mod plan;
 mod query;
 mod surface;
@@ -198,8 +199,9 @@ impl Scene {
             stats.bytes += group.bytes();
             let shared = group.bvh.bytes() + size_of_val(&*group.items);
             let share = group.instances.len() as f64 / group.items.len().max(1) as f64;
-            stats.instance_bytes +=
-                size_of_val(&*group.instances) + (shared as f64 * share) as usize;
+            stats.instance_bytes += size_of_val(&*group.instances)
+                + size_of_val(&*group.matrices)
+                + (shared as f64 * share) as usize;
         }
         stats
     }

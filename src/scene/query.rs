@@ -288,7 +288,7 @@ impl<S: Sink> Walk<'_, '_, S> {
                 };
                 self.visit(
                     inner,
-                    &transformed(&prepared.line, &instance.to_child),
+                    &transformed(&prepared.line, &place.group.to_child(instance)),
                     stack,
                 )
             }

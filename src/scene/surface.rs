@@ -125,7 +125,7 @@ pub(super) struct Located<'s> {
     pub(super) group: &'s Group,
     pub(super) number: u32,
     depth: usize,
-    path: [Option<&'s PlacedGroup>; MAX_DEPTH],
+    path: [Option<(&'s Group, &'s PlacedGroup)>; MAX_DEPTH],
 }
 
 impl Located<'_> {
@@ -134,13 +134,13 @@ impl Located<'_> {
         let inner = self.path[..self.depth]
             .iter()
             .flatten()
-            .map(|instance| instance.to_child);
+            .map(|(group, instance)| group.to_child(instance));
         std::iter::once(*to_root).chain(inner)
     }
 
     /// The organ of the outermost instance.
     pub(super) fn instance_organ(&self) -> Option<OrganId> {
-        let outermost = self.path[0].map(|instance| instance.organ);
+        let outermost = self.path[0].map(|(_, instance)| instance.organ);
         outermost.or(self.group.shape_of(self.number).instance_organ)
     }
 }
@@ -199,7 +199,7 @@ impl Scene {
         while number >= located.group.places.len() as u64 {
             let instance = located.group.instance_of(number);
             number -= instance.first;
-            located.path[located.depth] = Some(instance);
+            located.path[located.depth] = Some((located.group, instance));
             located.depth += 1;
             located.group = &self.groups[instance.group as usize];
         }
