@@ -1,9 +1,9 @@
 //! Text of `.rgg` files → syntax tree.
 //!
-//! [`scan`] cuts a text into words and brackets and finds what is wrong with those alone: unclosed strings, comments and
-//! brackets, foreign characters, absurd nesting. [`parse`](self::parse()) then reads the text with the grammar in
-//! `grammar/rgg.pest`. Only when that fails does [`blame`] look closer: it cuts the text into declarations, statements and
-//! rules ([`cut`]), reads each alone, and words one diagnostic for each that is broken ([`explain`], [`mistakes`]), so that one mistake
+//! `scan` cuts a text into words and brackets and finds what is wrong with those alone: unclosed strings, comments and
+//! brackets, foreign characters, absurd nesting. [`parse()`] then reads the text with the grammar in
+//! `grammar/rgg.pest`. Only when that fails does `blame` look closer: it cuts the text into declarations, statements and
+//! rules (`cut`), reads each alone, and words one diagnostic for each that is broken (`explain`, `mistakes`), so that one mistake
 //! does not hide the next.
 
 pub mod ast;
@@ -24,7 +24,7 @@ use crate::diag::{Diagnostics, FileId};
 
 /// Reads one file. The tree holds the declarations that could be read; it is complete if there is no error.
 ///
-/// Takes time linear in the length of `text` (about 3 MB/s) and never overflows the stack: nesting, operands of one
+/// Takes time linear in the length of `text` (about 2 MB/s) and never overflows the stack: nesting, operands of one
 /// expression and `else` chains are limited, with a diagnostic.
 pub fn parse(file: FileId, text: &str) -> (ast::File, Diagnostics) {
     let scan = scan::scan(text);
