@@ -96,7 +96,7 @@ fn broken_models_give_one_clear_message_and_no_file() {
         format!("module A;\nprotected void init() [ Axiom ==> A; ]\npublic void run() {body}\n")
     };
     let cases = [
-        ("syntax", run("[ A ==> F(1; ]"), "", &["m.rgg:"][..]),
+        ("syntax", run("[ A ==> F(1; ]"), "", &["m.rgg:3"][..]),
         (
             "unknown module",
             run("[ A ==> F(1) Intenode; ]"),
