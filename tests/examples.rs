@@ -1,5 +1,192 @@
-//! Every example is free of errors, grows, and makes a picture of something.
+//! Every example is free of errors and warnings, grows, and makes a picture of something.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use understory::diag::{Diagnostics, SourceMap};
+use understory::film::LinearImage;
+use understory::growth::Growth;
+use understory::integrator::CancelToken;
+use understory::options::{Options, Origin};
+use understory::pipeline::audience::Audience;
+use understory::pipeline::studio::{Keep, Run, Studio};
+use understory::pipeline::viewing::Viewing;
+use understory::pipeline::viewpoint;
+use understory::pipeline::world::Machine;
+
+/// Keeps what models print; no example may be questionable.
+#[derive(Default)]
+struct Listener {
+    printed: Mutex<String>,
+}
+
+impl Audience for Listener {
+    fn printed(&self, text: &str) {
+        self.printed.lock().unwrap().push_str(text);
+    }
+
+    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
+        panic!("{found:#?} in {sources:?}");
+    }
+
+    fn begins(&self, _: &'static str) {}
+
+    fn progress(&self, _: u64, _: u64) {}
+
+    fn ends(&self) {}
+}
+
+/// An example with some options of its own.
+struct Example {
+    listener: Arc<Listener>,
+    world: Machine,
+    path: PathBuf,
+    flags: Options,
+}
+
+impl Example {
+    fn new(name: &str, flags: &[(&str, &str)]) -> Self {
+        let mut options = Options::default();
+        for (key, text) in flags {
+            options.set(key, text, Origin::Flag).unwrap();
+        }
+        Self {
+            listener: Arc::default(),
+            world: Machine::new(),
+            path: Path::new("examples").join(name),
+            flags: options,
+        }
+    }
+
+    fn open(&self) -> (Studio<'_>, Run) {
+        let (audience, path) = (self.listener.clone(), self.path.clone());
+        let mut studio = Studio::new(&self.world, audience, path, Keep::Last);
+        let opened = studio.read(&self.flags).unwrap();
+        let run = studio.check(opened).unwrap();
+        (studio, run)
+    }
+
+    fn grow(&self) -> Growth {
+        let (mut studio, run) = self.open();
+        studio.grow(&run, &CancelToken::default()).unwrap()
+    }
+
+    /// The picture, and how high what is on it reaches.
+    fn picture(&self) -> (LinearImage, f64) {
+        let (mut studio, run) = self.open();
+        let cancel = CancelToken::default();
+        let scene = studio.build(&run, &cancel).unwrap();
+        let view = viewpoint::view(&run.options, &scene.bounds());
+        let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
+        let viewing = Viewing {
+            world: &self.world,
+            audience: &*self.listener,
+            options: &run.options,
+            cancel: &cancel,
+        };
+        let prepared = viewing.prepare(&scene).unwrap();
+        let shot = viewing.shoot(&prepared, &camera).unwrap();
+        (shot.image, scene.bounds().max.z)
+    }
+}
+
+const SMALL: [(&str, &str); 2] = [("size", "32x32"), ("samples", "4")];
+
+/// Neither black nor flat, and green where plants are.
+fn assert_shows_something(name: &str, image: &LinearImage) {
+    let luminances: Vec<f64> = image.pixels.iter().map(|pixel| pixel.luminance()).collect();
+    let n = luminances.len() as f64;
+    let mean = luminances.iter().sum::<f64>() / n;
+    let variance = luminances.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / n;
+    assert!(mean > 1.0, "{name}: mean radiance {mean}");
+    let contrast = variance.sqrt() / mean;
+    assert!(contrast > 0.1, "{name}: contrast {contrast}");
+    let n_green = image
+        .pixels
+        .iter()
+        .filter(|p| p.g > 1.15 * p.r && p.g > 1.15 * p.b)
+        .count();
+    let least = if name == "koch.rgg" { 0 } else { 20 };
+    assert!(n_green >= least, "{name}: {n_green} green pixels");
+}
+
+#[test]
+fn all_examples_are_here() {
+    let is_model = |path: &PathBuf| path.extension().is_some_and(|e| e == "rgg");
+    let files = std::fs::read_dir("examples")
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let mut names: Vec<String> = files
+        .filter(is_model)
+        .map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "bush.rgg",
+            "forest.rgg",
+            "koch.rgg",
+            "poplar.rgg",
+            "spruce.rgg"
+        ]
+    );
+}
+
+#[test]
+fn small_models_make_pictures() {
+    // Heights in metres.
+    for (name, heights) in [
+        ("koch.rgg", 3.5..3.8),
+        ("bush.rgg", 1.5..3.5),
+        ("poplar.rgg", 8.0..14.0),
+        ("spruce.rgg", 12.0..18.0),
+    ] {
+        let (image, height) = Example::new(name, &SMALL).picture();
+        assert!(heights.contains(&height), "{name}: {height} m");
+        assert_shows_something(name, &image);
+    }
+}
+
+#[test]
+fn the_poplar_has_thousands_of_leaves() {
+    let counts = Example::new("poplar.rgg", &[]).grow().counts();
+    let n_leaves = counts.iter().find(|(name, _)| name == "Leaf").unwrap().1;
+    assert!((4_000..40_000).contains(&n_leaves), "{n_leaves} leaves");
+}
+
+#[test]
+fn a_snowflake_has_three_times_a_power_of_four_sides() {
+    for n in 0..=4 {
+        let steps = n.to_string();
+        let counts = Example::new("koch.rgg", &[("steps", &steps)])
+            .grow()
+            .counts();
+        let n_sides = counts.iter().find(|(name, _)| name == "Side").unwrap().1;
+        // Flake k stops after k steps.
+        let expected: usize = (0..=4_u32).map(|flake| 3 * 4_usize.pow(flake.min(n))).sum();
+        assert_eq!(n_sides, expected);
+    }
+}
+
+#[test]
+fn the_forest_has_ten_thousand_trees() {
+    // Younger than on its picture, which is quicker; the same trees stand at the same places.
+    let flags = [SMALL.as_slice(), &[("steps", "20")]].concat();
+    let forest = Example::new("forest.rgg", &flags);
+    let (image, _) = forest.picture();
+    assert_shows_something("forest.rgg", &image);
+    let printed = forest.listener.printed.lock().unwrap().clone();
+    let n_trees: usize = printed
+        .trim()
+        .strip_suffix(" trees")
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!(n_trees >= 10_000, "{printed}");
+    let counts = forest.grow().counts();
+    let n_of = |name: &str| counts.iter().find(|(found, _)| found == name).unwrap().1;
+    assert_eq!(n_of("Instance") + n_of("Tree"), n_trees);
+    assert!(n_of("Tree") >= 8, "{counts:?}");
+}
