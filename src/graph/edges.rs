@@ -298,7 +298,7 @@ impl<O: Payload> Graph<O> {
         let target = self.edges.edges[at as usize].to as usize;
         self.edges.unlink(at, &mut self.nodes);
         self.edges.release(at);
-        self.nominate(target);
+        self.nominate_loser(target);
     }
 
     pub(super) fn remove_all_edges(&mut self, index: usize) {
@@ -308,15 +308,6 @@ impl<O: Payload> Graph<O> {
         while self.nodes[index].first_in != NIL {
             self.drop_edge(self.nodes[index].first_in);
         }
-    }
-
-    /// Whether both nodes were in the graph before, so that an edge between them may close a ring.
-    pub(crate) fn note_ring(&mut self, from: NodeId, to: NodeId) {
-        let is_old = |g: &Self, n| {
-            g.live_index(n)
-                .is_ok_and(|i| g.nodes[i].flags & INSERTED != 0)
-        };
-        self.may_have_rings |= is_old(self, from) && is_old(self, to);
     }
 }
 

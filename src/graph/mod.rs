@@ -19,6 +19,8 @@ mod validate;
 mod walk;
 #[cfg(test)]
 pub(crate) mod testing;
+#[cfg(test)]
+mod tests;
 
 pub use edges::{EdgeBits, InEdges, OutEdges};
 pub use node_id::NodeId;

@@ -28,7 +28,7 @@ pub enum GraphError {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Header {
     pub(super) type_id: TypeId,
-    pub(super) flags: u8,
+    pub(super) flags: u16,
     pub(super) generation: u32,
     /// Start of the node's words.
     words: u32,
@@ -41,20 +41,24 @@ pub(super) struct Header {
 }
 
 /// The place is taken.
-pub(super) const LIVE: u8 = 1;
+pub(super) const LIVE: u16 = 1;
 /// The node is in its extent: queries find it.
-pub(super) const INSERTED: u8 = 2;
+pub(super) const INSERTED: u16 = 2;
 /// The node has rare attributes.
-pub(super) const HAS_SIDE: u8 = 4;
+pub(super) const HAS_SIDE: u16 = 4;
 /// A rule of the running step has consumed the node.
-pub(super) const CONSUMED: u8 = 8;
+pub(super) const CONSUMED: u16 = 8;
 /// Reached by the running sweep.
-pub(super) const REACHED: u8 = 16;
+pub(super) const REACHED: u16 = 16;
 /// Waits to be looked at by the sweep at the end of the step.
-pub(super) const CANDIDATE: u8 = 32;
+pub(super) const CANDIDATE: u16 = 32;
 
 /// The queue of the running step knows the node.
-const QUEUED: u8 = 64;
+const QUEUED: u16 = 64;
+/// The node has lost an incoming edge in the running step.
+pub(super) const LOST: u16 = 128;
+/// On the way that the running sweep looks at.
+pub(super) const ON_WAY: u16 = 256;
 
 /// A rare attribute.
 #[derive(Clone, Debug)]
@@ -78,8 +82,6 @@ pub struct Graph<O> {
     pub(super) edges: EdgeArena,
     pub(super) extents: Extents,
     pub(super) candidates: Vec<u32>,
-    /// An edge joined two nodes that were both there before: the step may have made a ring.
-    pub(super) may_have_rings: bool,
     root: NodeId,
     limit: usize,
     stamp: u64,
@@ -102,7 +104,6 @@ impl<O: Payload> Graph<O> {
             edges: EdgeArena::default(),
             extents,
             candidates: vec![],
-            may_have_rings: false,
             root,
             limit,
             stamp: 0,
@@ -194,7 +195,7 @@ impl<O: Payload> Graph<O> {
             header.flags = header.flags & !QUEUED | INSERTED;
             header.extent_place = self.extents.push(header.type_id, index as u32);
             self.touch(true);
-            self.nominate(index);
+            self.nominate_new(index);
         }
         Ok(())
     }
@@ -222,7 +223,7 @@ impl<O: Payload> Graph<O> {
         self.words
             .release(words, self.types[type_id].template().len());
         let header = &mut self.nodes[index];
-        header.flags &= CANDIDATE;
+        header.flags &= CANDIDATE | LOST;
         header.generation = header.generation.wrapping_add(1);
         self.free_nodes.push(index as u32);
         self.touch(flags & INSERTED != 0);
@@ -437,7 +438,6 @@ mod tests {
             .add_edge(c, b, EdgeBits::SUCCESSOR)
             .expect("two nodes");
         graph.remove_edge(a, b, EdgeBits::ALL);
-        graph.note_ring(c, b);
         graph.end_of_step();
         assert_eq!(graph.string_text(), "S A(1)");
     }

@@ -175,7 +175,8 @@ pub(super) struct Visited {
 impl Visited {
     pub(super) fn new<O: Payload>(graph: &Graph<O>, path: &Path<'_>) -> Self {
         let is_one_way = matches!(path.way, EdgeWay::Forward | EdgeWay::Backward);
-        let is_needed = !path.is_single() && !(is_one_way && graph.is_forest());
+        let meets_none_twice = is_one_way && graph.is_forest();
+        let is_needed = !path.is_single() && !meets_none_twice;
         let n_left = if path.is_single() {
             usize::MAX
         } else {

@@ -341,7 +341,6 @@ impl<O: Payload> Queue<O> {
             }
         }
         for &(from, to, _) in frame.edges.iter().chain(&frame.undirected) {
-            graph.note_ring(from, to);
             self.mention(graph, from);
             self.mention(graph, to);
         }

@@ -2,6 +2,7 @@
 
 use super::deferred::Assignment;
 use super::producer::Frame;
+use super::search::Flow;
 use crate::graph::{EdgeBits, Graph, GraphError, NodeId, Payload};
 
 /// What can go wrong when a step is applied; each is the model's fault.
@@ -41,6 +42,16 @@ impl Default for Mode {
         Self {
             derivation: Derivation::Parallel,
             excludes_consumed: true,
+        }
+    }
+}
+
+impl Mode {
+    /// Whether a search goes on after a match, applied or not.
+    pub fn after_match(self) -> Flow {
+        match self.derivation {
+            Derivation::Sequential => Flow::Stop,
+            Derivation::Parallel | Derivation::SequentialRandom => Flow::Continue,
         }
     }
 }

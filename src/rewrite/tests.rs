@@ -112,8 +112,7 @@ impl World {
                 world.produce(right)?;
                 world.queue.end(&mut world.graph);
             }
-            let is_one = world.mode.derivation == Derivation::Sequential;
-            Ok(if is_one { Flow::Stop } else { Flow::Continue })
+            Ok(world.mode.after_match())
         })
     }
 
@@ -801,4 +800,60 @@ fn an_instantiation_body_is_linked_apart_from_the_graph() {
     assert_ne!(world.graph.stamp(), stamp);
     assert_eq!(world.graph.shape_stamp(), shape);
     assert_eq!(world.graph.validate(), Ok(()));
+}
+
+/// Node by node, branches in alphabetical order: parallel steps turn the order of branches round.
+fn canonical(graph: &Graph<()>, node: NodeId) -> String {
+    use crate::graph::EdgeBits;
+    let ty = graph.type_of(node).expect("exists");
+    let children = |bits: EdgeBits| {
+        let found = graph
+            .out_edges(node)
+            .filter(move |(_, b)| b.intersects(bits));
+        let mut texts: Vec<_> = found.map(|(child, _)| canonical(graph, child)).collect();
+        texts.sort();
+        texts
+    };
+    let branches = children(EdgeBits::BRANCH).concat();
+    let successors = children(EdgeBits::SUCCESSOR).concat();
+    format!("{}[{branches}]{successors}", graph.types()[ty].name)
+}
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig { cases: 200, failure_persistence: None, ..Default::default() })]
+
+    /// Rules with one node on the left rewrite the graph as bracketed strings are rewritten.
+    #[test]
+    fn single_node_rules_are_those_of_bracketed_strings(
+        start in "[A-E]( \\[ [A-E]( [A-E])? \\]){0,2}( [A-E]){0,3}",
+        rules in proptest::collection::vec("[A-E]( [A-E]){0,2}( \\[ [A-E] \\])?( [A-E])?", 5),
+        which in 1..32_usize,
+    ) {
+        let letters = ["A", "B", "C", "D", "E"];
+        let chosen = |letter: &str| {
+            let i = letters.iter().position(|l| *l == letter)?;
+            (which >> i & 1 == 1).then(|| rules[i].as_str())
+        };
+        let mut world = World::new(&format!("S {start}"));
+        let mut text = start;
+        for _ in 0..3 {
+            let all: Vec<String> = letters
+                .iter()
+                .filter_map(|letter| Some(format!("{letter} ==> {}", chosen(letter)?)))
+                .collect();
+            let all: Vec<&str> = all.iter().map(String::as_str).collect();
+            world.step(&all).expect("no errors");
+            let rewritten = text.split(' ').map(|symbol| chosen(symbol).unwrap_or(symbol));
+            text = rewritten.collect::<Vec<_>>().join(" ");
+            let expected = World::new(&format!("S {text}"));
+            proptest::prop_assert_eq!(
+                canonical(&world.graph, world.graph.root()),
+                canonical(&expected.graph, expected.graph.root())
+            );
+            proptest::prop_assert_eq!(world.graph.validate(), Ok(()));
+            if text.len() > 4000 {
+                break;
+            }
+        }
+    }
 }

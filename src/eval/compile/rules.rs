@@ -152,13 +152,13 @@ impl Scope<'_> {
                 &mut |env, nodes| {
                     env.machine.tick(span)?;
                     if !env.admit(mode) {
-                        return Ok(rewrite::Flow::Continue);
+                        return Ok(mode.after_match());
                     }
                     let flow = env
                         .apply(arrow, nodes, &body)
                         .map_err(|trap| note_match(trap, env.machine, nodes, span))?;
                     Ok(match flow {
-                        Flow::Next | Flow::Continue(Label::Innermost) => rewrite::Flow::Continue,
+                        Flow::Next | Flow::Continue(Label::Innermost) => mode.after_match(),
                         Flow::Break(Label::Innermost) => rewrite::Flow::Stop,
                         flow => {
                             left_by = flow;
