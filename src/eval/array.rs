@@ -9,7 +9,7 @@ use std::sync::atomic::{
 use std::sync::{Mutex, PoisonError};
 
 use super::memory::Charge;
-use super::value::Value;
+use super::value::{Value, free};
 
 /// An array of the language.
 #[derive(Debug)]
@@ -90,6 +90,16 @@ impl Array {
         })
     }
 
+    /// Moves the references that it holds to `parts`.
+    pub(super) fn take_parts(&mut self, parts: &mut Vec<Value>) {
+        if let Elements::Reference(elements) = &mut self.elements {
+            let values = elements.iter_mut();
+            parts.extend(
+                values.map(|v| std::mem::take(v.get_mut().unwrap_or_else(PoisonError::into_inner))),
+            );
+        }
+    }
+
     /// Java's name of its type, as printed for a reference.
     pub fn type_name(&self) -> &'static str {
         match self.elements {
@@ -102,6 +112,16 @@ impl Array {
             Elements::Float(_) => "float[]",
             Elements::Double(_) => "double[]",
             Elements::Reference(_) => "Object[]",
+        }
+    }
+}
+
+impl Drop for Array {
+    fn drop(&mut self) {
+        if matches!(self.elements, Elements::Reference(_)) {
+            let mut parts = vec![];
+            self.take_parts(&mut parts);
+            free(parts);
         }
     }
 }

@@ -8,7 +8,7 @@ use super::random::JavaRandom;
 use super::stack::{Kind, Local, Stack};
 use super::text::Text;
 use super::trap::{Cause, Trap};
-use super::value::Value;
+use super::value::{MAX_TEXT, Value};
 use crate::diag::Span;
 use crate::graph::{Graph, GraphError, NodeId};
 use crate::library::ClassId;
@@ -44,8 +44,6 @@ impl Default for Limits {
 const EXCLUDE_DELETED: i32 = 8;
 /// Parallel, deleted nodes excluded.
 const DEFAULT_MODE: i32 = EXCLUDE_DELETED;
-/// Longest text, in bytes.
-const MAX_TEXT: usize = 1 << 26;
 /// Texts up to this length take no share of the memory budget.
 const FREE_TEXT: usize = 64;
 /// Turns between two looks at the cancellation token.

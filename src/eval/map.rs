@@ -33,6 +33,14 @@ impl JavaMap {
         self.entries.iter().flatten()
     }
 
+    /// All keys and values.
+    pub(super) fn into_parts(self) -> impl Iterator<Item = Value> {
+        self.entries
+            .into_iter()
+            .flatten()
+            .flat_map(|(key, value)| [key, value])
+    }
+
     /// The value of `key`.
     pub fn get(&self, key: &Value) -> Option<&Value> {
         let place = self.place(key)?;

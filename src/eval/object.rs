@@ -9,7 +9,7 @@ use super::map::JavaMap;
 use super::memory::Charge;
 use super::random::JavaRandom;
 use super::text::Text;
-use super::value::Value;
+use super::value::{Value, free};
 use crate::library::ClassId;
 
 /// An object of a library class.
@@ -148,18 +148,27 @@ impl Object {
         }
     }
 
-    /// `equals` for two different objects.
-    pub fn equals(a: &Arc<Self>, b: &Arc<Self>) -> bool {
+    /// `equals` for two different objects that stand in so many collections.
+    pub(super) fn equals(a: &Arc<Self>, b: &Arc<Self>, depth: usize) -> bool {
         let (left, right) = (a.lock().clone(), b.lock().clone());
         match (left, right) {
             (Data::Tuple(a), Data::Tuple(b)) => a == b,
             (Data::Color(a), Data::Color(b)) => a == b,
             (Data::Shader(a), Data::Shader(b)) => a == b,
             (Data::List(a), Data::List(b)) => {
-                a.values.len() == b.values.len()
-                    && a.values.iter().zip(&b.values).all(|(a, b)| a.equals(b))
+                let mut pairs = a.values.iter().zip(&b.values);
+                a.values.len() == b.values.len() && pairs.all(|(a, b)| a.equals_nested(b, depth))
             }
             _ => false,
+        }
+    }
+
+    /// Moves the values that it holds to `parts`.
+    pub(super) fn take_parts(&mut self, parts: &mut Vec<Value>) {
+        match self.data.get_mut().unwrap_or_else(PoisonError::into_inner) {
+            Data::List(list) => parts.append(&mut list.values),
+            Data::Map(map) => parts.extend(std::mem::take(&mut **map).into_parts()),
+            _ => {}
         }
     }
 
@@ -176,22 +185,28 @@ impl Object {
         }
     }
 
-    /// Appends its text, as its `toString()` gives it.
-    pub fn append_to(&self, out: &mut String) {
-        let name = self.class.name();
+    /// Appends its text, as its `toString()` gives it; it stands in so many collections.
+    pub(super) fn append_nested(&self, out: &mut String, depth: usize) {
+        // A copy, so that a list that contains itself can be asked again.
         let data = self.lock().clone();
         match data {
-            Data::Tuple(v) => push_all(out, ["(", ")"], v.to_array().map(java_double_to_string)),
-            Data::Color(c) => push_all(out, ["(", ")"], c.map(java_double_to_string)),
-            Data::Shader(c) => push_all(out, ["(", ")"], c.map(java_float_to_string)),
-            Data::List(list) => push_all(out, ["[", "]"], list.values.iter().map(Value::to_string)),
-            Data::Map(map) => {
-                push_all(
-                    out,
-                    ["{", "}"],
-                    map.entries().map(|(key, value)| format!("{key}={value}")),
-                );
-            }
+            Data::Tuple(v) => push_all(out, ["(", ")"], v.to_array(), |out, x| {
+                out.push_str(&java_double_to_string(x))
+            }),
+            Data::Color(c) => push_all(out, ["(", ")"], c, |out, x| {
+                out.push_str(&java_double_to_string(x))
+            }),
+            Data::Shader(c) => push_all(out, ["(", ")"], c, |out, x| {
+                out.push_str(&java_float_to_string(x))
+            }),
+            Data::List(list) => push_all(out, ["[", "]"], &list.values, |out, v| {
+                v.append_nested(out, depth)
+            }),
+            Data::Map(map) => push_all(out, ["{", "}"], map.entries(), |out, (key, value)| {
+                key.append_nested(out, depth);
+                out.push('=');
+                value.append_nested(out, depth);
+            }),
             Data::Buffer(text, _) => out.push_str(&text),
             Data::Throwable(message) => {
                 out.push_str(&qualified(self.class));
@@ -201,19 +216,32 @@ impl Object {
                 }
             }
             Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
-                out.push_str(name);
+                out.push_str(self.class.name());
             }
         }
     }
 }
 
-fn push_all(out: &mut String, [open, close]: [&str; 2], parts: impl IntoIterator<Item = String>) {
+impl Drop for Object {
+    fn drop(&mut self) {
+        let mut parts = vec![];
+        self.take_parts(&mut parts);
+        free(parts);
+    }
+}
+
+fn push_all<T>(
+    out: &mut String,
+    [open, close]: [&str; 2],
+    parts: impl IntoIterator<Item = T>,
+    mut push: impl FnMut(&mut String, T),
+) {
     out.push_str(open);
     for (i, part) in parts.into_iter().enumerate() {
         if i > 0 {
             out.push_str(", ");
         }
-        out.push_str(&part);
+        push(out, part);
     }
     out.push_str(close);
 }
@@ -257,8 +285,8 @@ mod tests {
                 Data::Tuple(DVec3::new(x, 0.0, 0.0)),
             ))
         };
-        assert!(Object::equals(&point(1.0), &point(1.0)));
-        assert!(!Object::equals(&point(1.0), &point(2.0)));
+        assert!(Object::equals(&point(1.0), &point(1.0), 0));
+        assert!(!Object::equals(&point(1.0), &point(2.0), 0));
         assert_eq!(point(0.0).hash_code(), point(-0.0).hash_code());
     }
 }

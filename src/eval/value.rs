@@ -12,6 +12,11 @@ use super::text::{Text, char_of};
 use crate::graph::NodeId;
 use crate::library::ClassId;
 
+/// Longest text, in bytes.
+pub const MAX_TEXT: usize = 1 << 26;
+/// Collections in collections that are printed and compared.
+const MAX_NESTING: usize = 40;
+
 /// Any value of the language. Texts, arrays and objects are shared, as Java's references are.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs, reason = "the names are Java's own")]
@@ -156,8 +161,13 @@ impl Value {
         }
     }
 
-    /// `a.equals(b)`: boxed numbers by type and value, tuples and collections by content.
+    /// `a.equals(b)`: boxed numbers by type and value, tuples and lists by content.
     pub fn equals(&self, other: &Self) -> bool {
+        self.equals_nested(other, 0)
+    }
+
+    /// Whether values that stand in so many collections are equal.
+    pub(super) fn equals_nested(&self, other: &Self, depth: usize) -> bool {
         match (self, other) {
             (Self::Boolean(a), Self::Boolean(b)) => a == b,
             (Self::Byte(a), Self::Byte(b)) => a == b,
@@ -171,7 +181,9 @@ impl Value {
             (Self::Double(a), Self::Double(b)) => {
                 a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan()
             }
-            (Self::Object(a), Self::Object(b)) => Arc::ptr_eq(a, b) || Object::equals(a, b),
+            (Self::Object(a), Self::Object(b)) => {
+                Arc::ptr_eq(a, b) || depth < MAX_NESTING && Object::equals(a, b, depth + 1)
+            }
             (Self::Null, Self::Null) => true,
             (Self::Text(a), Self::Text(b)) => a.as_str() == b.as_str(),
             (Self::Node(a), Self::Node(b)) => a == b,
@@ -211,8 +223,16 @@ impl Value {
     }
 
     /// Appends the text of anything but a node, as Java's `"" + x` does; nodes are named by the machine.
+    ///
+    /// Collections that contain themselves end in `…`, and nothing is appended to a text that is too long already.
     pub fn append_to(&self, out: &mut String) {
+        self.append_nested(out, 0);
+    }
+
+    /// Appends the text of a value that stands in so many collections.
+    pub(super) fn append_nested(&self, out: &mut String, depth: usize) {
         match self {
+            _ if out.len() > MAX_TEXT => {}
             Self::Null => out.push_str("null"),
             Self::Boolean(b) => out.push_str(if *b { "true" } else { "false" }),
             Self::Char(unit) => out.push(char_of(*unit)),
@@ -222,10 +242,30 @@ impl Value {
             Self::Text(text) => out.push_str(text.as_str()),
             Self::Node(_) => out.push_str("Node"),
             Self::Array(array) => out.push_str(array.type_name()),
-            Self::Object(object) => object.append_to(out),
+            Self::Object(_) if depth > MAX_NESTING => out.push('…'),
+            Self::Object(object) => object.append_nested(out, depth + 1),
             Self::Byte(_) | Self::Short(_) | Self::Int(_) => {
                 out.push_str(&self.as_int().unwrap_or(0).to_string());
             }
+        }
+    }
+}
+
+/// Frees values without recursion, so that lists in lists in lists do not overflow the stack.
+pub(super) fn free(mut open: Vec<Value>) {
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Object(shared) => {
+                if let Some(mut object) = Arc::into_inner(shared) {
+                    object.take_parts(&mut open);
+                }
+            }
+            Value::Array(shared) => {
+                if let Some(mut array) = Arc::into_inner(shared) {
+                    array.take_parts(&mut open);
+                }
+            }
+            _ => {}
         }
     }
 }

@@ -125,11 +125,6 @@ impl Growth {
         &self.machine.graph
     }
 
-    /// The graph, to be drawn from: instantiation bodies make floating nodes in it for a while.
-    pub fn graph_mut(&mut self) -> &mut Graph<Value> {
-        &mut self.machine.graph
-    }
-
     /// Number of nodes of each type that has any, turtle commands included, root left out.
     pub fn counts(&self) -> Vec<(String, usize)> {
         self.graph().counts()

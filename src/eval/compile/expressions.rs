@@ -117,6 +117,7 @@ impl Scope<'_> {
             let mut text = String::new();
             for write in &writers {
                 write(p, m, &mut text)?;
+                m.check_text(text.len()).map_err(|trap| trap.at(span))?;
             }
             m.new_text(text).map_err(|trap| trap.at(span))
         }))

@@ -5,11 +5,11 @@ use super::convert::number;
 use crate::check::model::{Expr, Operator, Type};
 use crate::diag::Span;
 use crate::eval::code::{Code, FromCode, Source};
+use crate::eval::library::pow;
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
 use crate::graph::NodeId;
 use crate::library::ClassId;
-use crate::math::functions::pow;
 
 impl Scope<'_> {
     pub(super) fn binary(

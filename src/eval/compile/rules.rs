@@ -312,7 +312,10 @@ impl MatchEnv<PatternCode> for Env<'_> {
 
     fn condition(&mut self, condition: &PatternCode) -> Result<bool, Trap> {
         match condition {
-            PatternCode::Condition(source) => source.get(self.program, self.machine),
+            PatternCode::Condition(source) => {
+                self.machine.tick(self.compiled.pattern.span)?;
+                source.get(self.program, self.machine)
+            }
             PatternCode::Equal(_) | PatternCode::Node(_) => Ok(false),
         }
     }

@@ -73,7 +73,7 @@ impl Scope<'_> {
         result: usize,
         at: Option<u32>,
     ) -> Iterate {
-        let compiled: CompiledPattern = self.pattern(pattern);
+        let (compiled, span): (CompiledPattern, _) = (self.pattern(pattern), pattern.span);
         Box::new(move |program, machine, visit| {
             let mut turn = Turn::Next;
             let mut env = Env {
@@ -90,6 +90,7 @@ impl Scope<'_> {
                     if let Some(at) = at {
                         Some(nodes[result]).store(&mut env.machine.stack, at);
                     }
+                    env.machine.tick(span)?;
                     turn = visit(env.program, env.machine)?;
                     Ok(if turn == Turn::Next {
                         rewrite::Flow::Continue
@@ -103,13 +104,14 @@ impl Scope<'_> {
     }
 
     fn range(&self, from: &Expr, until: &Expr, at: Option<u32>) -> Iterate {
-        let is_long = from.ty == Type::Long;
+        let (is_long, span) = (from.ty == Type::Long, from.span);
         let [from, until] = [from, until]
             .map(|e| i64::from_code(super::convert::number(self.expr(e), &Type::Long)));
         Box::new(move |p, m, visit| {
             let from = from.get(p, m)?;
             let until = until.get(p, m)?;
             for i in from..=until {
+                m.tick(span)?;
                 match at {
                     Some(at) if is_long => i.store(&mut m.stack, at),
                     Some(at) => (i as i32).store(&mut m.stack, at),

@@ -4,8 +4,7 @@ use super::Behaviour::{
     self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2,
     Native,
 };
-use super::exponential::exp;
-use super::{format, numbers, places, random, strings, system};
+use super::{format, numbers, places, precise, random, strings, system};
 use crate::library::FunctionId as F;
 use crate::math::functions as math;
 
@@ -61,12 +60,12 @@ pub fn function(id: F) -> Behaviour {
         F::Floor => Double1(f64::floor),
         F::Ceil => Double1(f64::ceil),
         F::Sqrt => Double1(f64::sqrt),
-        F::Cbrt => Double1(math::cbrt),
-        F::Pow => Double2(numbers::pow),
-        F::Exp => Double1(exp),
+        F::Cbrt => Double1(precise::cbrt),
+        F::Pow => Double2(precise::pow),
+        F::Exp => Double1(precise::exp),
         F::Expm1 => Double1(libm::expm1),
-        F::Log => Double1(math::ln),
-        F::Log10 => Double1(math::log10),
+        F::Log => Double1(precise::ln),
+        F::Log10 => Double1(precise::log10),
         F::Log1p => Double1(libm::log1p),
         F::Sin => Double1(math::sin),
         F::Cos => Double1(math::cos),

@@ -6,13 +6,13 @@
 
 mod collections;
 mod constructors;
-mod exponential;
 mod format;
 mod functions;
 mod light;
 mod methods;
 mod numbers;
 mod places;
+mod precise;
 mod random;
 mod shaders;
 mod strings;
@@ -33,6 +33,7 @@ use crate::library::{ClassId, MethodId};
 pub use constructors::constructor;
 pub use functions::function;
 pub use methods::method;
+pub(super) use precise::pow;
 
 /// Where a library function runs.
 pub struct Context<'a> {

@@ -53,14 +53,6 @@ pub(super) fn max_float(a: f32, b: f32) -> f32 {
     max_double(f64::from(a), f64::from(b)) as f32
 }
 
-/// Power; unlike C's, 1 to the power of infinity or NaN is NaN.
-pub(super) fn pow(base: f64, exponent: f64) -> f64 {
-    if exponent.is_nan() || (base.abs() == 1.0 && exponent.is_infinite()) {
-        return f64::NAN;
-    }
-    crate::math::functions::pow(base, exponent)
-}
-
 /// Degrees as radians.
 pub(super) fn to_radians(degrees: f64) -> f64 {
     degrees * (std::f64::consts::PI / 180.0)
@@ -236,8 +228,6 @@ mod tests {
             min_double(0.0, -0.0).is_sign_negative() && max_double(-0.0, 0.0).is_sign_positive()
         );
         assert!(min_double(f64::NAN, 1.0).is_nan() && max_float(1.0, f32::NAN).is_nan());
-        assert!(pow(1.0, f64::INFINITY).is_nan() && pow(1.0, f64::NAN).is_nan());
-        assert_eq!(pow(f64::NAN, 0.0), 1.0);
     }
 
     #[test]
