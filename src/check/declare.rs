@@ -281,6 +281,8 @@ impl<'a> Checker<'a> {
                 }
             }
         }
+        let type_id = self.modules[index].type_id;
+        self.types.set_constructors(type_id, vec![params.clone()]);
         (self.modules[index].params, self.modules[index].defaults) = (params, defaults);
     }
 

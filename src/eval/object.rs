@@ -191,16 +191,16 @@ impl Object {
         let data = self.lock().clone();
         match data {
             Data::Tuple(v) => push_all(out, ["(", ")"], v.to_array(), |out, x| {
-                out.push_str(&java_double_to_string(x))
+                out.push_str(&java_double_to_string(x));
             }),
             Data::Color(c) => push_all(out, ["(", ")"], c, |out, x| {
-                out.push_str(&java_double_to_string(x))
+                out.push_str(&java_double_to_string(x));
             }),
             Data::Shader(c) => push_all(out, ["(", ")"], c, |out, x| {
-                out.push_str(&java_float_to_string(x))
+                out.push_str(&java_float_to_string(x));
             }),
             Data::List(list) => push_all(out, ["[", "]"], &list.values, |out, v| {
-                v.append_nested(out, depth)
+                v.append_nested(out, depth);
             }),
             Data::Map(map) => push_all(out, ["{", "}"], map.entries(), |out, (key, value)| {
                 key.append_nested(out, depth);

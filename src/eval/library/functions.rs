@@ -60,7 +60,7 @@ pub fn function(id: F) -> Behaviour {
         F::Floor => Double1(f64::floor),
         F::Ceil => Double1(f64::ceil),
         F::Sqrt => Double1(f64::sqrt),
-        F::Cbrt => Double1(precise::cbrt),
+        F::Cbrt => Double1(math::cbrt),
         F::Pow => Double2(precise::pow),
         F::Exp => Double1(precise::exp),
         F::Expm1 => Double1(libm::expm1),

@@ -1,0 +1,196 @@
+//! Expressions of Java with the texts that JDK 17 printed for them: promotion, rounding, overflow, casts, texts, library.
+
+use std::sync::{Arc, Mutex};
+
+use understory::check::{SourceModel, check};
+use understory::diag::FileId;
+use understory::growth::{Growth, GrowthOptions};
+use understory::syntax::parse;
+
+#[rustfmt::skip]
+const EXPRESSIONS: &[(&str, &str)] = &[
+    ("7 / 2 * 2.0", "6.0"),
+    ("-7 / 2", "-3"),
+    ("-7 % 3", "-1"),
+    ("7 % -3", "1"),
+    ("-7.5 % 2", "-1.5"),
+    ("5.5f % 2", "1.5"),
+    ("Integer.MAX_VALUE + 1", "-2147483648"),
+    ("Integer.MIN_VALUE / -1", "-2147483648"),
+    ("Integer.MIN_VALUE % -1", "0"),
+    ("Long.MIN_VALUE / -1L", "-9223372036854775808"),
+    ("-Integer.MIN_VALUE", "-2147483648"),
+    ("Math.abs(Integer.MIN_VALUE)", "-2147483648"),
+    ("1 << 33", "2"),
+    ("1 << -1", "-2147483648"),
+    ("1L << 33", "8589934592"),
+    ("1L << 65", "2"),
+    ("-16 >> 2", "-4"),
+    ("-16 >>> 28", "15"),
+    ("-16L >>> 60", "15"),
+    ("-1 >>> 0", "-1"),
+    ("(byte) 200", "-56"),
+    ("(byte) -129", "127"),
+    ("(short) 70000", "4464"),
+    ("(char) 65", "A"),
+    ("(char) 65.9", "A"),
+    ("(int) 'z'", "122"),
+    ("(char) ('a' + 1)", "b"),
+    ("'a' + 'b'", "195"),
+    ("\"\" + 'a' + 'b'", "ab"),
+    ("'a' + 1 + \"x\" + 1 + 'a'", "98x1a"),
+    ("(int) 3.99", "3"),
+    ("(int) -3.99", "-3"),
+    ("(int) 1e20", "2147483647"),
+    ("(int) -1e20", "-2147483648"),
+    ("(long) 1e20", "9223372036854775807"),
+    ("(int) Double.NaN", "0"),
+    ("(long) Float.POSITIVE_INFINITY", "9223372036854775807"),
+    ("(byte) 300.7", "44"),
+    ("(char) -1", "￿"),
+    ("(short) 1e10", "-1"),
+    ("(int) 4294967297L", "1"),
+    ("(float) 0.1", "0.1"),
+    ("(double) 0.1f", "0.10000000149011612"),
+    ("0.1f + 0.2f", "0.3"),
+    ("0.1 + 0.2", "0.30000000000000004"),
+    ("0.1f + 0.2", "0.30000000149011613"),
+    ("1 / 3f", "0.33333334"),
+    ("1 / 3.0", "0.3333333333333333"),
+    ("100 * 1.1f", "110.0"),
+    ("1e10f * 1e10f", "1.0E20"),
+    ("1e30f * 1e30f", "Infinity"),
+    ("-1.0 / 0", "-Infinity"),
+    ("0.0 / 0", "NaN"),
+    ("1f / 0 == Float.POSITIVE_INFINITY", "true"),
+    ("Double.NaN == Double.NaN", "false"),
+    ("0.0 == -0.0", "true"),
+    ("16777217", "16777217"),
+    ("(float) 16777217", "1.6777216E7"),
+    ("16777216f + 1f", "1.6777216E7"),
+    ("(int) 16777217f", "16777216"),
+    ("2147483647f", "2.14748365E9"),
+    ("(int) 2147483647f", "2147483647"),
+    ("9007199254740993L", "9007199254740993"),
+    ("(double) 9007199254740993L", "9.007199254740992E15"),
+    ("(long) 9007199254740993.0", "9007199254740992"),
+    ("(float) 1e-50", "0.0"),
+    ("1.0e-3", "0.001"),
+    ("9.999e-4", "9.999E-4"),
+    ("1e7", "1.0E7"),
+    ("9999999.0", "9999999.0"),
+    ("12345678.9", "1.23456789E7"),
+    ("123456.789f", "123456.79"),
+    ("1.0E-5f", "1.0E-5"),
+    ("3.4e38f", "3.4E38"),
+    ("5e-324", "4.9E-324"),
+    ("100.0 / 3", "33.333333333333336"),
+    ("(float) (100.0 / 3)", "33.333332"),
+    ("5 > 3 == true", "true"),
+    ("1 < 2 && 3 < 2 || true", "true"),
+    ("true ^ false", "true"),
+    ("6 & 3 | 8 ^ 2", "10"),
+    ("~7", "-8"),
+    ("~7L", "-8"),
+    ("5 == 5.0", "true"),
+    ("'a' == 97", "true"),
+    ("1 + 2 + \"x\" + 1 + 2", "3x12"),
+    ("\"a\" + null", "anull"),
+    ("\"a\" + 1.0f + 2.0 + 3L + true + 'c'", "a1.02.03truec"),
+    ("\"abc\".length() + \"abc\".charAt(1)", "101"),
+    ("\"abc\".substring(1) + \"abcdef\".substring(1, 3)", "bcbc"),
+    ("\"hello\".indexOf(\"l\") + \"hello\".lastIndexOf(\"l\") * 10", "32"),
+    ("\"b\".compareTo(\"a\") + \"a\".compareTo(\"abc\")", "-1"),
+    ("\"a,b,,c,,\".split(\",\").length", "4"),
+    ("\" x \".trim().equals(\"x\")", "true"),
+    ("\"AbC\".toLowerCase() + \"AbC\".toUpperCase()", "abcABC"),
+    ("\"banana\".replace(\"an\", \"x\")", "bxxa"),
+    ("Math.round(2.5) + Math.round(-2.5)", "1"),
+    ("Math.round(0.49999999999999994)", "0"),
+    ("Math.round(-0.5f)", "0"),
+    ("Math.floor(-1.5) + Math.ceil(-1.5)", "-3.0"),
+    ("Math.rint(2.5) + Math.rint(3.5)", "6.0"),
+    ("Math.max(-0.0, 0.0)", "0.0"),
+    ("Math.min(-0.0, 0.0)", "-0.0"),
+    ("Math.signum(-3.5)", "-1.0"),
+    ("Math.sqrt(2)", "1.4142135623730951"),
+    ("Math.pow(2, 0.5)", "1.4142135623730951"),
+    ("Math.pow(2, -1)", "0.5"),
+    ("Math.exp(1)", "2.718281828459045"),
+    ("Math.exp(-2.5)", "0.0820849986238988"),
+    ("Math.log(10)", "2.302585092994046"),
+    ("Math.log(7.3)", "1.9878743481543455"),
+    ("Math.log10(2)", "0.3010299956639812"),
+    ("Math.cbrt(10)", "2.154434690031884"),
+    ("Math.sin(1)", "0.8414709848078965"),
+    ("Math.cos(2)", "-0.4161468365471424"),
+    ("Math.tan(0.5)", "0.5463024898437905"),
+    ("Math.atan2(1, 2)", "0.4636476090008061"),
+    ("Math.asin(0.3)", "0.3046926540153975"),
+    ("Math.hypot(3, 4)", "5.0"),
+    ("Math.toRadians(30)", "0.5235987755982988"),
+    ("Math.toDegrees(1)", "57.29577951308232"),
+    ("Math.floorMod(-7, 3)", "2"),
+    ("Math.floorDiv(-7, 3)", "-3"),
+    ("Integer.toHexString(-1)", "ffffffff"),
+    ("Integer.toBinaryString(10)", "1010"),
+    ("Integer.parseInt(\"-42\") + 1", "-41"),
+    ("Double.parseDouble(\"1e3\")", "1000.0"),
+    ("Float.parseFloat(\"2.5\") * 2", "5.0"),
+    ("Integer.MAX_VALUE * 2L", "4294967294"),
+    ("Long.MAX_VALUE + 1", "-9223372036854775808"),
+    ("1000000 * 1000000", "-727379968"),
+    ("(5 / 2) * 2.0f", "4.0"),
+    ("true ? 1 : 2.0", "1.0"),
+    ("false ? 1 : 'a'", "a"),
+    ("true ? 'b' : 0", "b"),
+    ("(true ? null : \"s\")", "null"),
+    ("10 - 4 - 3", "3"),
+    ("2 + 3 * 4 - 6 / 4 % 2", "13"),
+    ("-5 / 2 * 2 + -5 % 2", "-5"),
+    ("1.0f * Integer.MAX_VALUE", "2.14748365E9"),
+    ("(double) Long.MAX_VALUE", "9.223372036854776E18"),
+    ("(float) Long.MAX_VALUE", "9.223372E18"),
+    ("(long) (float) Long.MAX_VALUE", "9223372036854775807"),
+    ("String.format(\"%.2f|%5d|%-5s|%05d\", 3.14159, 42, \"ab\", 7)", "3.14|   42|ab   |00007"),
+    ("String.format(\"%e %x\", 12345.678, 255)", "1.234568e+04 ff"),
+    ("new java.util.Random(7).nextInt(100)", "36"),
+    ("new java.util.Random(7).nextLong()", "-4967725919621401576"),
+    ("new java.util.Random(7).nextGaussian()", "0.8452060657049847"),
+    ("new java.util.Random(7).nextDouble()", "0.7306990420600421"),
+    ("\"x\".hashCode() + \"hello\".hashCode()", "99162442"),
+];
+
+/// What a model whose `init` has this body prints.
+fn printed(body: &str) -> Result<String, String> {
+    let text = format!("protected void init() {{\n{body}\n}}");
+    let (ast, read) = parse(FileId(0), &text);
+    let (model, checked) = check(&[SourceModel {
+        name: "model.rgg".into(),
+        ast,
+    }]);
+    if read.has_errors() || checked.has_errors() {
+        return Err(format!("{read:#?} {checked:#?}"));
+    }
+    let printed = Arc::new(Mutex::new(String::new()));
+    let sink = Arc::clone(&printed);
+    let output = Box::new(move |text: &str| sink.lock().unwrap().push_str(text));
+    let mut growth = Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false))
+        .map_err(|d| d.message)?;
+    growth.init().map_err(|d| d.message)?;
+    let printed = printed.lock().unwrap().clone();
+    Ok(printed)
+}
+
+#[test]
+fn expressions_print_what_java_prints() {
+    let mut wrong = vec![];
+    for (expression, expected) in EXPRESSIONS {
+        match printed(&format!("println(\"\" + ({expression}));")) {
+            Ok(found) if found.trim_end_matches('\n') == *expected => {}
+            Ok(found) => wrong.push(format!("{expression}: {found} instead of {expected}")),
+            Err(fault) => wrong.push(format!("{expression}: {fault}")),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
