@@ -174,11 +174,11 @@ fn printed(body: &str) -> Result<String, String> {
     }
     let printed = Arc::new(Mutex::new(String::new()));
     let sink = Arc::clone(&printed);
-    let output = Box::new(move |text: &str| sink.lock().unwrap().push_str(text));
+    let output = Box::new(move |text: &str| sink.lock().expect("one thread").push_str(text));
     let mut growth = Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false))
         .map_err(|d| d.message)?;
     growth.init().map_err(|d| d.message)?;
-    let printed = printed.lock().unwrap().clone();
+    let printed = printed.lock().expect("one thread").clone();
     Ok(printed)
 }
 
