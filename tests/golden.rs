@@ -1,5 +1,7 @@
 //! Runs every golden model through parser, checker and evaluator and compares what it prints with what GroIMP printed.
 
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 

@@ -1,5 +1,7 @@
 //! Expressions of Java with the texts that JDK 17 printed for them: promotion, rounding, overflow, casts, texts, library.
 
+#![allow(clippy::unwrap_used, reason = "a helper that fails fails its test")]
+
 use std::sync::{Arc, Mutex};
 
 use understory::check::{SourceModel, check};
