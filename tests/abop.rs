@@ -1,6 +1,11 @@
 //! The L-systems of The Algorithmic Beauty of Plants, chapter 1 and figure 2.6, written as `.rgg` (`tests/abop/`), against
 //! tables of an independent expander (`tests/refdata/abop_*.csv`): string, its length, drawn lines, brackets, turtle.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test may stop where its data is not as it must be"
+)]
+
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
