@@ -3,7 +3,7 @@
 //! A shape is exact (no tessellation). Axes run along local +z from the origin, as GroIMP's primitives do.
 //!
 //! The files beside this one hold what a ray needs: [`triangle`] and parallelogram tests that leave no gap
-//! between neighbours, and the [`unit`] forms (sphere, disk, frustum, box) to which every other placed shape is an affine
+//! between neighbours, and the [`mod@unit`] forms (sphere, disk, frustum, box) to which every other placed shape is an affine
 //! image. All of it is `f64`.
 
 pub mod area;

@@ -27,7 +27,7 @@ signatures! {
     NormalDouble = ""."normal"(Double, Double) -> Double, Random, "", "Normal with mean and standard deviation.";
     Lognormal = ""."lognormal"(Double, Double) -> Double, Random, "", "Log-normal with mean and standard deviation of the variable itself.";
     Probability = ""."probability"(Float) -> Boolean, Random, "", "True with this probability; draws nothing where it is at least 1.";
-    Distribution = ""."distribution"(FloatArray) -> Int, Random, "", "Index i with probability p[i].";
+    Distribution = ""."distribution"(FloatArray) -> Int, Random, "", "Index i with probability `p[i]`.";
     SetSeed = ""."setSeed"(Long) -> Void, Random, "", "Starts the model's generator anew.";
 
     Derive = ""."derive"() -> Void, Writes, "", "Applies what the rules have queued: one step.";

@@ -1,6 +1,6 @@
 //! Rules at work: finding matches of a pattern, making what comes in their place, and applying all of it at once.
 //!
-//! A rule costs what it matches. [`search`] walks the extent of the pattern's first type and the edges from there; the
+//! A rule costs what it matches. [`search()`] walks the extent of the pattern's first type and the edges from there; the
 //! right-hand side of a match tells the [`Queue`] which nodes and edges it wants ([`Queue::begin`] … [`Queue::end`]);
 //! [`Queue::apply`] changes the graph at the end of the step. There is no language here: conditions and arguments are
 //! evaluated by whoever implements [`MatchEnv`].
