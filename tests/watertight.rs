@@ -105,6 +105,23 @@ fn nothing_escapes_through_mirrored_and_stretched_instances() {
     }
 }
 
+/// A closed mesh with acute edges, its front outside, round the origin.
+fn tetrahedron(size: f64) -> TriangleMesh {
+    let corners = [
+        [1.0, 1.0, 1.0],
+        [-1.0, -1.0, 1.0],
+        [-1.0, 1.0, -1.0],
+        [1.0, -1.0, -1.0],
+    ];
+    TriangleMesh {
+        positions: corners
+            .map(|corner| DVec3::from_array(corner) * size)
+            .to_vec(),
+        triangles: vec![[0, 1, 3], [0, 2, 1], [0, 3, 2], [1, 2, 3]],
+        ..TriangleMesh::default()
+    }
+}
+
 /// Lets a ray bounce about inside, and rays leave outwards, and counts what cannot be: inside a convex body every bounce
 /// finds another part of the wall, outside nothing.
 fn false_hits(scene: &Scene, center: DVec3, size: f64, n: usize) -> (usize, usize) {
@@ -150,7 +167,7 @@ fn bounces_inside_and_outside_convex_bodies_never_meet_their_own_surface() {
         top_cap: true,
     };
     type OfSize = fn(f64) -> Shape;
-    let shapes: [(&str, OfSize); 3] = [
+    let shapes: [(&str, OfSize); 4] = [
         ("sphere", |radius| Shape::Sphere { radius }),
         ("box", |s| Shape::Box {
             half_x: s,
@@ -158,6 +175,7 @@ fn bounces_inside_and_outside_convex_bodies_never_meet_their_own_surface() {
             length: s,
         }),
         ("mesh", |radius| mesh(icosphere(3, radius))),
+        ("sharp mesh", |size| mesh(tetrahedron(size))),
     ];
     let n = rays() / 10;
     for size in [1e-6, 1e-3, 1.0, 1e3, 1e6] {

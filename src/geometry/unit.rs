@@ -83,17 +83,28 @@ impl UnitShape {
     }
 
     /// The point of `face` that is meant by `near`, a point computed with rounding errors.
+    ///
+    /// It keeps at least `margin` (in units of this frame, far below 1) away from the edges of the face: where two faces
+    /// meet, a point that is off by a rounding could lie on the wrong side of the other face.
     #[must_use]
-    pub fn point(&self, face: Face, near: DVec3) -> UnitPoint {
+    pub fn point(&self, face: Face, near: DVec3, margin: f64) -> UnitPoint {
         match (self, face) {
             (Self::Sphere, _) => sphere_point(near),
             (Self::Disk, _) => disk_point(near, 0.0, 1.0, DVec3::Z),
             (Self::Frustum(frustum), Face::Base) => {
-                disk_point(near, 0.0, frustum.base, DVec3::NEG_Z)
+                let inside = near
+                    .truncate()
+                    .clamp_length_max(frustum.base * (1.0 - margin));
+                disk_point(inside.extend(0.0), 0.0, frustum.base, DVec3::NEG_Z)
             }
-            (Self::Frustum(frustum), Face::Top) => disk_point(near, 1.0, frustum.top, DVec3::Z),
-            (Self::Frustum(frustum), _) => frustum.side_point(near),
-            (Self::Cube, face) => cube_point(face, near),
+            (Self::Frustum(frustum), Face::Top) => {
+                let inside = near
+                    .truncate()
+                    .clamp_length_max(frustum.top * (1.0 - margin));
+                disk_point(inside.extend(1.0), 1.0, frustum.top, DVec3::Z)
+            }
+            (Self::Frustum(frustum), _) => frustum.side_point(near, margin),
+            (Self::Cube, face) => cube_point(face, near, margin),
         }
     }
 
@@ -173,9 +184,9 @@ impl UnitFrustum {
         // b² - a·c, rearranged so that the large terms have already cancelled.
         let reach = (d2 * radius - o2 * growth).length();
         let miss = o2.perp_dot(d2).abs();
-        let discriminant = (reach - miss) * (reach + miss);
+        let apart = (reach - miss) * (reach + miss);
 
-        roots(a, b, c, discriminant).into_iter().find_map(|root| {
+        roots(a, b, c, apart).into_iter().find_map(|root| {
             let z = o.z + root * d.z;
             let on_side = (-RIM_OVERLAP..=1.0 + RIM_OVERLAP).contains(&z);
             let t = shift + root;
@@ -183,8 +194,8 @@ impl UnitFrustum {
         })
     }
 
-    fn side_point(&self, near: DVec3) -> UnitPoint {
-        let z = near.z.clamp(0.0, 1.0);
+    fn side_point(&self, near: DVec3, margin: f64) -> UnitPoint {
+        let z = near.z.clamp(margin, 1.0 - margin);
         let slope = self.top - self.base;
         let around = near.truncate().try_normalize().unwrap_or(DVec2::X);
         UnitPoint {
@@ -270,7 +281,7 @@ fn disk_point(near: DVec3, height: f64, radius: f64, normal: DVec3) -> UnitPoint
     }
 }
 
-fn cube_point(face: Face, near: DVec3) -> UnitPoint {
+fn cube_point(face: Face, near: DVec3, margin: f64) -> UnitPoint {
     let Face::Cube(axis, is_positive) = face else {
         return UnitPoint {
             position: near,
@@ -279,7 +290,8 @@ fn cube_point(face: Face, near: DVec3) -> UnitPoint {
         };
     };
     let axis = usize::from(axis);
-    let mut position = near.clamp(DVec3::NEG_ONE, DVec3::ONE);
+    let inside = DVec3::splat(1.0 - margin);
+    let mut position = near.clamp(-inside, inside);
     let side = if is_positive { 1.0 } else { -1.0 };
     position[axis] = side;
     let mut normal = DVec3::ZERO;
@@ -350,7 +362,7 @@ mod tests {
                     let (exit, exit_face) = shape.intersect(&line, rest).unwrap();
                     for (t, face, sign) in [(enter, face, -1.0), (exit, exit_face, 1.0)] {
                         let near = line.at(t);
-                        let point = shape.point(face, near);
+                        let point = shape.point(face, near, 0.0);
                         let slack = 1e-14 * (1.0 + distance);
                         assert!(
                             (point.position - near).length() < slack,
@@ -375,7 +387,7 @@ mod tests {
         for shape in shapes() {
             for line in lines(5.0) {
                 let (t, face) = shape.intersect(&line, ALL).unwrap();
-                let point = shape.point(face, line.at(t));
+                let point = shape.point(face, line.at(t), 1e-13);
                 let origin = point.position + point.normal * 1e-14;
                 for other in lines(1.0).iter().step_by(397) {
                     let side = other.direction.dot(point.normal);

@@ -5,7 +5,7 @@ use super::description::{MaterialId, OrganId};
 use super::group::{Group, Item, ItemKind, MeshShading, PlacedGroup, ShapeRecord};
 use super::plan::MAX_DEPTH;
 use super::query::{FIRST_PLANE, Hit};
-use crate::math::tolerance::{SHADOW_GAP, SPAWN_SAFETY, gamma};
+use crate::math::tolerance::{EDGE_MARGIN, EDGE_MARGIN_LIMIT, SHADOW_GAP, SPAWN_SAFETY, gamma};
 use crate::math::{PrimitiveId, Ray};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
@@ -82,6 +82,13 @@ impl SurfacePoint {
     }
 }
 
+/// A hit as the ray gives it, in the frame of a group.
+struct CarriedIn {
+    position: DVec3,
+    /// How near to an edge, per axis, rays had better not start.
+    blur: DVec3,
+}
+
 /// A point in the frame of a group, or of the world.
 struct LocalPoint {
     position: DVec3,
@@ -154,14 +161,12 @@ impl Scene {
         }
         let located = self.locate(hit.primitive);
         let shape = located.group.shape_of(located.number);
-        let mut local = match located.group.places[located.number as usize].map(Item::kind) {
-            Some(ItemKind::Triangle(index)) => triangle_point(located.group, shape, index, hit),
-            Some(ItemKind::Quad(index)) => quad_point(located.group, shape, index, hit),
-            Some(ItemKind::Solid(index)) => {
-                let maps = located.maps(&self.to_root);
-                let near = maps.fold(ray.at(hit.t), |point, map| map.transform_point3(point));
-                solid_point(located.group, index, hit, near)
-            }
+        let near = self.carried_in(&located, ray.at(hit.t));
+        let group = located.group;
+        let mut local = match group.places[located.number as usize].map(Item::kind) {
+            Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, &near),
+            Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, &near),
+            Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near),
             Some(ItemKind::Instance(_)) | None => {
                 unreachable!("invariant: only stored primitives are hit")
             }
@@ -170,6 +175,20 @@ impl Scene {
             local = local.leave(&map);
         }
         finish(local, shape, located.instance_organ(), ray, hit)
+    }
+
+    /// Carries a point of the world into the frame of a located primitive's group.
+    fn carried_in(&self, located: &Located, point: DVec3) -> CarriedIn {
+        let mut carried = CarriedIn {
+            position: point,
+            blur: point.abs() * EDGE_MARGIN,
+        };
+        for map in located.maps(&self.to_root) {
+            carried.position = map.transform_point3(carried.position);
+            carried.blur = absolute(&map.matrix3) * carried.blur;
+        }
+        carried.blur += carried.position.abs() * EDGE_MARGIN;
+        carried
     }
 
     fn plane_surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
@@ -235,21 +254,25 @@ fn orientation(shape: &ShapeRecord) -> f64 {
     if shape.is_mirrored { -1.0 } else { 1.0 }
 }
 
-fn triangle_point(group: &Group, shape: &ShapeRecord, index: usize, hit: &Hit) -> LocalPoint {
+fn triangle_point(
+    group: &Group,
+    shape: &ShapeRecord,
+    index: usize,
+    hit: &Hit,
+    near: &CarriedIn,
+) -> LocalPoint {
     let triangle = &group.triangles[index];
     let corners = group.corners(triangle);
-    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    let weights = inner_weights(&corners, cross.length(), hit, near);
     let parts: [DVec3; 3] = std::array::from_fn(|corner| corners[corner] * weights[corner]);
-    let normal = (corners[1] - corners[0])
-        .cross(corners[2] - corners[0])
-        .normalize();
-    let normal_g = normal * orientation(shape);
+    let normal_g = cross.normalize() * orientation(shape);
     let mut point = LocalPoint {
         position: parts[0] + parts[1] + parts[2],
         error: (parts[0].abs() + parts[1].abs() + parts[2].abs()) * gamma(7),
         normal_g,
         normal_s: normal_g,
-        uv: DVec2::new(hit.u, hit.v),
+        uv: DVec2::new(weights[1], weights[2]),
         is_flat: true,
     };
     if let Some(mesh) = shape.mesh {
@@ -257,6 +280,23 @@ fn triangle_point(group: &Group, shape: &ShapeRecord, index: usize, hit: &Hit) -
         shade_mesh(&mut point, &group.meshes[mesh as usize], number, weights);
     }
     point
+}
+
+/// The weights of a triangle's corners at a hit, moved inwards where the hit is too near to an edge.
+fn inner_weights(corners: &[DVec3; 3], area: f64, hit: &Hit, near: &CarriedIn) -> [f64; 3] {
+    let edge = |corner: usize| corners[(corner + 2) % 3] - corners[(corner + 1) % 3];
+    // Per corner: what share of its height over the opposite edge the margin is.
+    let margin = |corner| edge_margin(near, edge(corner), area);
+    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    let weights: [f64; 3] = std::array::from_fn(|corner| weights[corner].max(margin(corner)));
+    let sum = weights[0] + weights[1] + weights[2];
+    weights.map(|weight| weight / sum)
+}
+
+/// The margin along an edge of a face, as a share of the height over it; `area` is that of the parallelogram, edge times
+/// height.
+fn edge_margin(near: &CarriedIn, edge: DVec3, area: f64) -> f64 {
+    (near.blur.length() * edge.length() / area).min(EDGE_MARGIN_LIMIT)
 }
 
 /// Replaces shading normal and texture coordinates by those of the mesh, where it has any.
@@ -273,25 +313,38 @@ fn shade_mesh(point: &mut LocalPoint, shading: &MeshShading, triangle: usize, we
     }
 }
 
-fn quad_point(group: &Group, shape: &ShapeRecord, index: usize, hit: &Hit) -> LocalPoint {
+fn quad_point(
+    group: &Group,
+    shape: &ShapeRecord,
+    index: usize,
+    hit: &Hit,
+    near: &CarriedIn,
+) -> LocalPoint {
     let quad = &group.quads[index];
-    let (along_u, along_v) = (quad.edges[0] * hit.u, quad.edges[1] * hit.v);
-    let normal_g = quad.edges[0].cross(quad.edges[1]).normalize() * orientation(shape);
+    let cross = quad.edges[0].cross(quad.edges[1]);
+    let inner = |share: f64, other: DVec3| {
+        let margin = edge_margin(near, other, cross.length());
+        share.clamp(margin, 1.0 - margin)
+    };
+    let uv = DVec2::new(inner(hit.u, quad.edges[1]), inner(hit.v, quad.edges[0]));
+    let (along_u, along_v) = (quad.edges[0] * uv.x, quad.edges[1] * uv.y);
+    let normal_g = cross.normalize() * orientation(shape);
     LocalPoint {
         position: quad.corner + along_u + along_v,
         error: (quad.corner.abs() + along_u.abs() + along_v.abs()) * gamma(7),
         normal_g,
         normal_s: normal_g,
-        uv: DVec2::new(hit.u, hit.v),
+        uv,
         is_flat: true,
     }
 }
 
-fn solid_point(group: &Group, index: usize, hit: &Hit, near: DVec3) -> LocalPoint {
+fn solid_point(group: &Group, index: usize, hit: &Hit, near: &CarriedIn) -> LocalPoint {
     let solid = &group.solids[index];
-    let point = solid
-        .form
-        .point(hit.face, solid.to_unit.transform_point3(near));
+    let blur = absolute(&solid.to_unit.matrix3) * near.blur;
+    let margin = (blur.max_element() + EDGE_MARGIN).min(EDGE_MARGIN_LIMIT);
+    let near = solid.to_unit.transform_point3(near.position);
+    let point = solid.form.point(hit.face, near, margin);
     let local = LocalPoint {
         position: point.position,
         // Coordinates are at most 1, and so are the errors of the equations that define the surface.
