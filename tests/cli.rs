@@ -134,6 +134,14 @@ fn broken_models_give_one_clear_message_and_no_file() {
             "--steps 60 --max-modules 5000",
             &["m.rgg:3"][..],
         ),
+        (
+            "exploding body",
+            "module T(int d) ==> if (d > 0) (T(d - 1) F(random(1, 2)) T(d - 1));\n\
+             protected void init() [ Axiom ==> T(60); ]\n"
+                .to_owned(),
+            "--max-modules 5000",
+            &["m.rgg:1", "5000 nodes"][..],
+        ),
     ];
     for (name, model, flags, expected) in cases {
         let bench = Bench::new(&model);

@@ -149,7 +149,7 @@ fn steps(options: &Options, growth: &Growth) -> u32 {
     }
 }
 
-/// Turns a grown graph into geometry of at most `memory` bytes; also what is questionable about it.
+/// Turns a grown graph into geometry of at most `memory` bytes, bodies of at most `--max-modules` nodes; also what is questionable about it.
 ///
 /// # Errors
 /// If a part of the model cannot be drawn.
@@ -161,6 +161,7 @@ pub fn draw(
 ) -> Result<(Drawn, Diagnostics), Failure> {
     let limits = interpret::Limits {
         memory,
+        body_nodes: run.options.max_modules.value.get(),
         ..interpret::Limits::default()
     };
     match interpret::interpret(growth, limits) {
