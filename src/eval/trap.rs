@@ -42,8 +42,6 @@ pub enum Cause {
     },
     /// The user asked to stop.
     Cancelled,
-    /// The model asked to stop (`System.exit`).
-    Exit,
 }
 
 impl Trap {
@@ -112,7 +110,7 @@ impl Trap {
     pub fn thrown(&self) -> Option<&Value> {
         match &self.0.cause {
             Cause::Exception(value) => Some(value),
-            Cause::Limit { .. } | Cause::Cancelled | Cause::Exit => None,
+            Cause::Limit { .. } | Cause::Cancelled => None,
         }
     }
 
@@ -164,7 +162,6 @@ impl Trap {
                 "the model was stopped before it had finished".to_owned(),
                 None,
             ),
-            Cause::Exit => ("exit", "the model ended the run".to_owned(), None),
         };
         let mut diagnostic = Diagnostic::error(slug, span.unwrap_or_default(), message);
         if span.is_none() {

@@ -75,8 +75,10 @@ impl Growth {
     pub fn init(&mut self) -> Result<(), Box<Diagnostic>> {
         self.n_steps = 0;
         self.machine.step = 0;
+        let seed = self.options.seed;
         self.run_deep("in `init`".to_owned(), |program, machine| {
             machine.clear(program)?;
+            machine.random.set_seed(seed);
             program.initialize(machine)?;
             program.run_init(machine, Span::default())
         })
