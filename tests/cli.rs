@@ -236,6 +236,22 @@ fn senseless_wishes_are_usage_errors() {
 }
 
 #[test]
+fn a_view_straight_down_is_a_map() {
+    let bench = Bench::new("protected void init() [ Axiom ==> F(1); ]\n");
+    let line = format!("render m.rgg -o m.png {SMALL} --eye 0,0,5 --target 0,0,0");
+    bench.succeed(&line);
+    assert!(bench.fail(&format!("{line} --up 0,0,1"), 2).contains("up"));
+}
+
+#[test]
+fn a_film_does_not_end_by_the_clock() {
+    let bench = Bench::new("protected void init() [ Axiom ==> F(1); ]\n");
+    bench.write("m.toml", "[render]\ntime = 0.3\n");
+    let message = bench.fail(&format!("fly m.rgg --orbit --frames 0..1 -o f {SMALL}"), 2);
+    assert!(message.contains("time"), "{message}");
+}
+
+#[test]
 fn every_format_is_written_and_replaced() {
     let bench = Bench::new(TREE);
     for suffix in ["png", "jpg", "webp", "exr", "hdr"] {

@@ -3,7 +3,8 @@
 //! A set of boxes is split where the sum of area × count of both halves is smallest, the largest set first, until there
 //! are eight. Boxes with one common centroid are split by number, so that any input, however degenerate, gives a tree
 //! whose depth is logarithmic: neither its building nor its traversal can degrade to the quadratic behaviour that
-//! agglomerative builders show for coincident boxes.
+//! agglomerative builders show for coincident boxes. (obvhs's `Bvh2` was counted beside it: about as many nodes per ray on
+//! trees and forests, a fifth fewer on a million instances, but quadratic time for coincident boxes.)
 //!
 //! Source: [Wald2007](crate::references#wald2007).
 

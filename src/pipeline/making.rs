@@ -122,6 +122,11 @@ impl Making<'_> {
     /// # Errors
     /// If any stage fails.
     pub fn film(&self, studio: &mut Studio<'_>, run: &Run, folder: &Path) -> Result<Made, Failure> {
+        if run.options.time.value.is_some() {
+            // Frames that end by the clock would not be the same bytes twice.
+            let message = "a film has no `time`: its frames end after `samples`";
+            return Err(Failure::Usage(message.to_owned()));
+        }
         let scene = studio.build(run, self.cancel)?;
         let start = viewpoint::view(&run.options, &scene.bounds());
         let flight = Flight::orbit(start, run.options.flight_frames.value);

@@ -6,6 +6,7 @@ use crate::camera::{Camera, CameraError, View, framing};
 use crate::diag::Diagnostic;
 use crate::math::Bounds3;
 use crate::options::{Options, Origin};
+use glam::DVec3;
 
 /// The view of the options; what they leave open frames `bounds`.
 pub fn view(options: &Options, bounds: &Bounds3) -> View {
@@ -13,7 +14,7 @@ pub fn view(options: &Options, bounds: &Bounds3) -> View {
     let fov = options.fov.value;
     let whole = framing::frame(bounds, fov, aspect);
     let up = options.up.value;
-    match (options.eye.value, options.target.value) {
+    let view = match (options.eye.value, options.target.value) {
         (Some(eye), Some(target)) => View {
             eye,
             target,
@@ -33,7 +34,17 @@ pub fn view(options: &Options, bounds: &Bounds3) -> View {
             fov,
         },
         (None, None) => View { up, ..whole },
+    };
+    // A view straight down or up without a word on `up` is a map: north (+y) is at its top.
+    let along = view.target - view.eye;
+    let is_vertical = along.x == 0.0 && along.y == 0.0 && along.z != 0.0;
+    if is_vertical && options.up.origin == Origin::Default {
+        return View {
+            up: DVec3::Y,
+            ..view
+        };
     }
+    view
 }
 
 /// The camera of a view for pictures of the size that the options ask for.
