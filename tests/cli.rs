@@ -215,7 +215,7 @@ fn senseless_wishes_are_usage_errors() {
         ("--size 1000000x1000000", "memory"),
         ("--eye 1,NaN,2", "finite"),
         ("--eye 1,2,3 --target 1,2,3", "same point"),
-        ("--eye 0,0,9 --target 0,0,0", "up"),
+        ("--eye 0,0,9 --target 0,0,0 --up 0,0,1", "up"),
         ("--fov 0", "more than 0"),
         ("--fov 180", "less than 180"),
         ("--threads 0", "1 to 1024"),

@@ -137,6 +137,14 @@ mod tests {
     }
 
     #[test]
+    fn a_view_straight_down_has_north_at_its_top() {
+        let (_, options) = read("", &[("eye", "1,1,9"), ("target", "1,1,1")]);
+        assert_eq!(view(&options, &BOX).up, DVec3::Y);
+        let (_, options) = read("", &[("eye", "1,2,9"), ("target", "1,1,1")]);
+        assert_eq!(view(&options, &BOX).up, DVec3::Z);
+    }
+
+    #[test]
     fn an_impossible_camera_is_blamed_on_who_asked_for_it() {
         let twice = "[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]";
         let (sources, options) = read(twice, &[]);
@@ -145,7 +153,8 @@ mod tests {
         let (sources, options) = read("", &[("eye", "1,1,1"), ("target", "1,1,1")]);
         let failure = camera(&sources, &options, &view(&options, &BOX)).unwrap_err();
         assert!(matches!(failure, Failure::Usage(text) if text.contains("same point")));
-        let (sources, options) = read("", &[("eye", "1,1,9"), ("target", "1,1,1")]);
+        let down = [("eye", "1,1,9"), ("target", "1,1,1"), ("up", "0,0,1")];
+        let (sources, options) = read("", &down);
         let failure = camera(&sources, &options, &view(&options, &BOX)).unwrap_err();
         assert!(matches!(failure, Failure::Usage(text) if text.contains("up")));
     }
