@@ -18,7 +18,7 @@ use crate::turtle::Poses;
 /// What a model may use before it is stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Turns of loops and calls of methods in one step.
+    /// Turns of loops, calls of methods and nodes tried by searches in one step.
     pub steps: u64,
     /// Methods active at one time.
     pub depth: u32,
@@ -164,6 +164,11 @@ impl Machine {
         &self.limits
     }
 
+    /// Turns counted since the step began.
+    pub fn turns(&self) -> u64 {
+        self.n_ticks
+    }
+
     /// Begins a step: the count of turns starts again, and the stack of the thread that calls may grow by `stack_bytes`.
     pub fn begin(&mut self, stack_bytes: usize) {
         self.n_ticks = 0;
@@ -188,13 +193,25 @@ impl Machine {
         }
     }
 
+    /// Counts `n` nodes that the search for the pattern at `span` has tried; each is worth a turn of a loop.
+    #[inline]
+    pub fn spend_visits(&mut self, n: u32, span: Span) -> Result<(), Trap> {
+        self.n_ticks = self.n_ticks.saturating_add(u64::from(n));
+        if self.n_ticks < self.check_at || self.has_budget(span)? {
+            return Ok(());
+        }
+        let message = format!(
+            "this search does not end in time: {} nodes were tried in one step",
+            self.limits.steps
+        );
+        let hint = "parts of a pattern that only a comma joins are tried in all combinations: join them by edges, \
+                    by a label used again, or begin at a known node";
+        Err(Trap::limit("step-limit", message, hint, Some(span)))
+    }
+
     #[cold]
     fn check_budget(&mut self, span: Span) -> Result<(), Trap> {
-        self.check_at = self.n_ticks + CHECK_EVERY;
-        if (self.stop)() {
-            return Err(Trap::new(Cause::Cancelled, Some(span)));
-        }
-        if self.n_ticks <= self.limits.steps {
+        if self.has_budget(span)? {
             return Ok(());
         }
         let message = format!(
@@ -203,6 +220,16 @@ impl Machine {
         );
         let hint = "does its condition ever become false?";
         Err(Trap::limit("step-limit", message, hint, Some(span)))
+    }
+
+    /// Whether turns are left; an error if the user wants an end.
+    #[cold]
+    fn has_budget(&mut self, span: Span) -> Result<bool, Trap> {
+        self.check_at = self.n_ticks.saturating_add(CHECK_EVERY);
+        if (self.stop)() {
+            return Err(Trap::new(Cause::Cancelled, Some(span)));
+        }
+        Ok(self.n_ticks <= self.limits.steps)
     }
 
     /// Counts a call made at `span`, of the method `name`.

@@ -112,6 +112,12 @@ impl Growth {
         self.n_steps
     }
 
+    /// Turns of loops, calls, matches and nodes tried since the last step (or `init`) began: what [`Limits::steps`]
+    /// bounds. A measure of work that no clock disturbs.
+    pub fn turns(&self) -> u64 {
+        self.machine.turns()
+    }
+
     /// Whether the model has an `init`.
     pub fn has_init(&self) -> bool {
         self.program.has_init()

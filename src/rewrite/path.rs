@@ -127,13 +127,14 @@ impl<'p> Path<'p> {
         }
     }
 
-    /// Whether the path from `from` leads to `to`.
+    /// Whether the path from `from` leads to `to`; adds the nodes visited to `n_visits`.
     pub(super) fn reaches<O: Payload>(
         &self,
         graph: &Graph<O>,
         from: NodeId,
         to: NodeId,
         stack: &mut Vec<Open>,
+        n_visits: &mut usize,
     ) -> bool {
         let base = stack.len();
         let mut visited = Visited::new(graph, self);
@@ -141,6 +142,7 @@ impl<'p> Path<'p> {
         let mut is_reached = false;
         while stack.len() > base && !is_reached {
             let Some(open) = stack.pop() else { break };
+            *n_visits += 1;
             if !visited.is_new(open.0) {
                 continue;
             }

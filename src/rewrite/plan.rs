@@ -1,7 +1,7 @@
 //! In which order the nodes of a pattern are looked for.
 
-use crate::graph::TypeId;
 use crate::graph::pattern::{Candidate, Pattern};
+use crate::graph::{Graph, Payload, TypeId};
 
 /// A pattern made ready for searching; made once per rule or query.
 #[derive(Clone, Debug)]
@@ -95,6 +95,19 @@ impl Plan {
             types,
             via,
         }
+    }
+}
+
+impl Plan {
+    /// Whether a type that the pattern needs has no node at all, so that nothing need be tried. Conditions of partial
+    /// matches may draw random numbers; where there are some, the search takes its course.
+    pub(super) fn has_no_match<E, O: Payload>(
+        &self,
+        pattern: &Pattern<E>,
+        graph: &Graph<O>,
+    ) -> bool {
+        pattern.conditions.len() == self.once.len()
+            && self.types.iter().flatten().any(|&ty| graph.count(ty) == 0)
     }
 }
 

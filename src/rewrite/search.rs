@@ -26,6 +26,10 @@ pub trait MatchEnv<E> {
     /// The graph as it is now.
     fn graph(&self) -> &Graph<Self::Object>;
 
+    /// Takes note of so many candidates tried and nodes visited. An error ends the search: a pattern whose parts no edge
+    /// joins has as many candidates as the product of their numbers.
+    fn spend(&mut self, n_visits: u32) -> Result<(), Self::Error>;
+
     /// Buffers that searches share.
     fn scratch(&mut self) -> &mut ScratchPool;
 
@@ -87,6 +91,9 @@ pub fn search<E, M: MatchEnv<E>>(
             return Ok(());
         }
     }
+    if plan.has_no_match(pattern, env.graph()) {
+        return Ok(());
+    }
     let mut scratch = env.scratch().spare.pop().unwrap_or_default();
     scratch.nodes.clear();
     scratch
@@ -102,12 +109,16 @@ pub fn search<E, M: MatchEnv<E>>(
         env,
         found,
         scratch,
+        n_visits: 0,
     };
-    let result = search.step(0);
+    let result = search.step(0).and_then(|_| search.visits(0, 1));
     let scratch = search.scratch;
     env.scratch().spare.push(scratch);
-    result.map(|_| ())
+    result
 }
+
+/// So many visits are spent at once: the budget is looked at often enough, and the inner loop only counts.
+const BATCH: u32 = 1 << 10;
 
 struct Search<'a, E, M: MatchEnv<E>> {
     pattern: &'a Pattern<E>,
@@ -116,9 +127,23 @@ struct Search<'a, E, M: MatchEnv<E>> {
     env: &'a mut M,
     found: &'a mut Found<'a, M, M::Error>,
     scratch: Scratch,
+    /// Candidates tried and nodes visited that are not spent yet.
+    n_visits: u32,
 }
 
 impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
+    /// Counts visits, and spends what was counted when it is `batch` or more.
+    #[inline]
+    fn visits(&mut self, n: usize, batch: u32) -> Result<(), M::Error> {
+        self.n_visits = self
+            .n_visits
+            .saturating_add(u32::try_from(n).unwrap_or(u32::MAX));
+        if self.n_visits < batch {
+            return Ok(());
+        }
+        self.env.spend(std::mem::take(&mut self.n_visits))
+    }
+
     fn step(&mut self, at: usize) -> Result<Flow, M::Error> {
         let Some(&step) = self.plan.steps.get(at) else {
             return (self.found)(self.env, &self.scratch.nodes);
@@ -127,7 +152,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             Step::Start(node) => self.start(node, at),
             Step::Follow { edge, is_reversed } => self.follow(edge, is_reversed, at),
             Step::Check(edge) => {
-                if self.check(edge) {
+                if self.check(edge)? {
                     self.step(at + 1)
                 } else {
                     Ok(Flow::Continue)
@@ -157,15 +182,18 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
                     Some(_) | None => Ok(Flow::Continue),
                 };
             }
-            Candidate::Type(ty) => {
-                if !self.open_from_rare_end(node, *ty) {
-                    self.open_extent(*ty);
+            Candidate::Type(ty) => match self.rare_end(node, *ty) {
+                Some((count, rare)) => {
+                    self.visits(count, BATCH)?;
+                    self.open_from(rare);
                 }
-            }
+                None => self.open_extent(*ty),
+            },
             // All types extend the first one.
             Candidate::Any | Candidate::Same(_) => self.open_extent(TypeId(0)),
         }
         let end = self.scratch.open.len();
+        self.visits(end - base, BATCH)?;
         for i in base..end {
             let candidate = self.scratch.open[i].0;
             if self.try_node(node, candidate, at)? == Flow::Stop {
@@ -182,12 +210,9 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             .extend(self.env.graph().extent(ty).map(|node| (node, 0)));
     }
 
-    /// Takes as candidates only nodes of type `ty` from which a rare node of the pattern can be reached by its edges; `false`
-    /// if no node is much rarer. The order stays that of the extent.
-    fn open_from_rare_end(&mut self, start: usize, ty: TypeId) -> bool {
-        let Some(rare) = self.rare_end(start, ty) else {
-            return false;
-        };
+    /// Takes as candidates only the nodes from which a node for the pattern node `rare` can be reached by the pattern's
+    /// edges. The order stays that of the extent.
+    fn open_from(&mut self, rare: usize) {
         let base = self.scratch.open.len();
         let graph = self.env.graph();
         let open = &mut self.scratch.open;
@@ -223,11 +248,11 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             }
         }
         open.truncate(kept);
-        true
     }
 
-    /// The pattern node of the rarest type among those that single edges join to `start`, if it is much rarer than `ty`.
-    fn rare_end(&self, start: usize, ty: TypeId) -> Option<usize> {
+    /// The pattern node of the rarest type among those that single edges join to `start`, if it is much rarer than `ty`;
+    /// and how many nodes have that type.
+    fn rare_end(&self, start: usize, ty: TypeId) -> Option<(usize, usize)> {
         let is_joined = |&node: &usize| {
             let mut at = node;
             while let Some(via) = self.plan.via[at] {
@@ -243,7 +268,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         let typed = (0..self.plan.via.len()).filter(is_joined);
         let counted = typed.filter_map(|node| Some((graph.count(self.plan.types[node]?), node)));
         let (count, rare) = counted.min()?;
-        (count.saturating_mul(MUCH_RARER) < graph.count(ty)).then_some(rare)
+        (count.saturating_mul(MUCH_RARER) < graph.count(ty)).then_some((count, rare))
     }
 
     fn follow(&mut self, edge: usize, is_reversed: bool, at: usize) -> Result<Flow, M::Error> {
@@ -256,6 +281,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             let Some(open) = self.scratch.open.pop() else {
                 break;
             };
+            self.visits(1, BATCH)?;
             if !visited.is_new(open.0) {
                 continue;
             }
@@ -271,10 +297,14 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
     }
 
     /// Looks from the far end, which is quicker in trees: every node has one parent.
-    fn check(&mut self, edge: usize) -> bool {
+    fn check(&mut self, edge: usize) -> Result<bool, M::Error> {
         let (path, from, to) = self.path(edge, true);
         let (from, to) = (self.scratch.nodes[from], self.scratch.nodes[to]);
-        path.reaches(self.env.graph(), from, to, &mut self.scratch.open)
+        let mut n_visits = 0;
+        let graph = self.env.graph();
+        let is_reached = path.reaches(graph, from, to, &mut self.scratch.open, &mut n_visits);
+        self.visits(n_visits, BATCH)?;
+        Ok(is_reached)
     }
 
     fn path(&self, edge: usize, is_reversed: bool) -> (Path<'a>, usize, usize) {

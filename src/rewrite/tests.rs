@@ -28,6 +28,8 @@ struct World {
     pool: ScratchPool,
     names: Vec<String>,
     values: Vec<Option<Variable>>,
+    /// Nodes that searches have tried.
+    n_visits: u64,
 }
 
 impl World {
@@ -39,6 +41,7 @@ impl World {
             pool: ScratchPool::default(),
             names: vec![],
             values: vec![],
+            n_visits: 0,
         }
     }
 
@@ -290,6 +293,11 @@ impl MatchEnv<Expr> for World {
 
     fn graph(&self) -> &Graph<()> {
         &self.graph
+    }
+
+    fn spend(&mut self, n_visits: u32) -> Result<(), RewriteError> {
+        self.n_visits += u64::from(n_visits);
+        Ok(())
     }
 
     fn scratch(&mut self) -> &mut ScratchPool {

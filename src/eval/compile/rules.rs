@@ -286,6 +286,11 @@ impl MatchEnv<PatternCode> for Env<'_> {
         &self.machine.graph
     }
 
+    fn spend(&mut self, n_visits: u32) -> Result<(), Trap> {
+        self.machine
+            .spend_visits(n_visits, self.compiled.pattern.span)
+    }
+
     fn scratch(&mut self) -> &mut ScratchPool {
         &mut self.machine.scratch
     }
