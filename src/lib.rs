@@ -30,6 +30,7 @@ pub mod graph;
 pub mod turtle;
 pub mod library;
 pub mod check;
+pub mod manual;
 pub mod rewrite;
 pub mod eval;
 pub mod growth;

@@ -419,6 +419,26 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 }
 
 #[test]
+fn warnings_are_told_and_are_no_errors() {
+    let bench = Bench::new(&format!("{TREE}module Idle;\n"));
+    let output = bench.run("check m.rgg");
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    for part in [
+        "Warning: module `Idle` is never used",
+        "m.rgg:6:8",
+        "m.rgg: no errors, 1 warning\n",
+    ] {
+        assert!(told.contains(part), "{part}\n{told}");
+    }
+    let output = bench.run(&format!("render m.rgg -o m.png {SMALL}"));
+    assert_eq!(text(&output.stderr).matches("never used").count(), 1);
+    let output = bench.run("derive m.rgg --quiet");
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stderr), "");
+}
+
+#[test]
 fn quiet_is_quiet_and_help_is_help() {
     let bench = Bench::new(TREE);
     let output = bench.run(&format!("render m.rgg -o m.png {SMALL} --quiet"));

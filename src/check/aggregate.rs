@@ -14,7 +14,7 @@ use crate::library::ClassId;
 use crate::syntax::ast;
 
 /// Names of all functions over several values.
-pub(super) const NAMES: &[&str] = &[
+pub const NAMES: &[&str] = &[
     "sum",
     "prod",
     "count",

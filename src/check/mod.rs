@@ -18,6 +18,7 @@ mod context;
 mod declaration;
 mod declare;
 mod expr;
+mod lint;
 mod member;
 mod messages;
 pub mod model;
@@ -40,6 +41,9 @@ mod types;
 mod tests;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+/// Names of the functions over several values (`sum`, `count`, …).
+pub use aggregate::NAMES as AGGREGATES;
 
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::graph::{TypeId, TypeTable};
@@ -65,7 +69,11 @@ pub fn check(files: &[SourceModel]) -> (Model, Diagnostics) {
     let mut checker = Checker::new(files);
     checker.declare();
     let model = checker.bodies();
-    (model, checker.diagnostics)
+    let mut found = checker.diagnostics;
+    if !found.has_errors() {
+        found.append(lint::lint(&model));
+    }
+    (model, found)
 }
 
 /// The state of a check: what is declared, and the body at hand.

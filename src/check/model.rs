@@ -52,6 +52,8 @@ pub struct Module {
     pub overrides: Vec<(MethodId, MethodId)>,
     /// Its declaration.
     pub span: Span,
+    /// Its name in the declaration.
+    pub name_span: Span,
 }
 
 /// How a new node of a module is filled. Slot 0 is the node.

@@ -41,6 +41,7 @@ impl Checker<'_> {
                 instantiation,
                 overrides,
                 span: ast.span,
+                name_span: ast.name.span,
             });
         }
         all

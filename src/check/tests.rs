@@ -40,6 +40,79 @@ pub(super) fn check_texts(texts: &[(&str, &str)]) -> (super::model::Model, Vec<S
     (model, shown.collect())
 }
 
+/// `line:slug` of everything found in a model, in order of place.
+pub(super) fn found_in(texts: &[(&str, &str)]) -> Vec<String> {
+    let mut map = SourceMap::default();
+    let mut found = Diagnostics::default();
+    let mut files = vec![];
+    for (name, text) in texts {
+        let id = map.add(*name, *text);
+        let (ast, diagnostics) = syntax::parse(id, text);
+        found.append(diagnostics);
+        let name = (*name).into();
+        files.push(SourceModel { name, ast });
+    }
+    found.append(check(&files).1);
+    let line =
+        |d: &crate::diag::Diagnostic| d.primary.as_ref().map_or(0, |p| map.line_column(p.span).0);
+    found
+        .sorted()
+        .into_iter()
+        .map(|d| format!("{}:{}", line(d), d.slug))
+        .collect()
+}
+
+#[test]
+fn models_that_are_meant_so_get_no_warning() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut n_models = 0;
+    let mut check_one = |name: &str, text: &str| {
+        let found = found_in(&[("model", text)]);
+        let expected = WARNED
+            .iter()
+            .find(|(warned, _)| *warned == name)
+            .map_or(&[][..], |(_, w)| w);
+        assert_eq!(found, expected, "{name}");
+        n_models += 1;
+    };
+    for (name, text, refused_at) in golden_models() {
+        if refused_at.is_none() && !UNSUPPORTED.contains(&name.as_str()) {
+            check_one(&name, &text);
+        }
+    }
+    for folder in ["examples", "tests/abop"] {
+        for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "rgg") {
+                check_one(
+                    &path.display().to_string(),
+                    &std::fs::read_to_string(&path).unwrap(),
+                );
+            }
+        }
+    }
+    assert!(n_models > 60, "{n_models}");
+}
+
+/// Golden models that do on purpose, or for brevity, what is warned of.
+const WARNED: &[(&str, &[&str])] = &[
+    // `rule7`: "second not".
+    ("16-conditions", &["63:dead-rule"]),
+    ("17-rule-order", &["52:dead-rule"]),
+    ("22-select-where", &["36:no-match"]),
+    ("63-acc-int-from-sum", &["1:unused-module"]),
+    ("67-acc-float-param-double", &["1:unused-module"]),
+    ("74-acc-uninitialised", &["1:unused-module"]),
+    ("75-acc-missing-return", &["1:unused-module"]),
+    ("77-acc-byte-200", &["1:unused-module"]),
+    ("87-acc-private-field", &["1:unused-module"]),
+    ("89-acc-return-in-rules", &["1:unused-module"]),
+    ("90-acc-annotation", &["1:unused-module", "4:unused-module"]),
+    ("92-acc-null-first", &["3:no-match"]),
+    ("93-acc-mean-empty", &["3:no-match"]),
+    ("96-acc-multiple-assign", &["1:unused-module"]),
+];
+
 /// The models of `tests/golden`: name, text, and the line of the first fault where GroIMP refuses them.
 fn golden_models() -> Vec<(String, String, Option<usize>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");

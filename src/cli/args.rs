@@ -44,7 +44,7 @@ pub struct ModelArg {
 /// What all commands that run a model take.
 #[derive(Debug, Args)]
 pub struct Manners {
-    /// Show no progress and no summary
+    /// Show no progress, no summary and no warnings
     #[arg(long)]
     pub quiet: bool,
     /// Print each option with its value and where it came from, and stop

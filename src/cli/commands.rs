@@ -2,6 +2,7 @@
 
 use super::args::{CheckArgs, DeriveArgs, FlyArgs, Print, RenderArgs};
 use super::shell::Shell;
+use crate::diag::render;
 use crate::growth::Growth;
 use crate::options::Command;
 use crate::pipeline::budget;
@@ -23,10 +24,15 @@ pub(super) fn check(shell: &Shell, args: &CheckArgs) -> Result<(), Failure> {
     let mut studio = studio(shell, path);
     let opened = studio.read(&shell.flags)?;
     let options = opened.options.clone();
-    shell.on_threads(&options, || studio.check(opened))?;
+    let run = shell.on_threads(&options, || studio.check(opened))?;
+    let odd = if run.warnings.is_empty() {
+        String::new()
+    } else {
+        format!(", {}", render::summary(&run.warnings))
+    };
     shell
         .terminal
-        .note(&format!("{}: no errors", path.display()));
+        .note(&format!("{}: no errors{odd}", path.display()));
     Ok(())
 }
 

@@ -149,7 +149,9 @@ impl Audience for Terminal {
     }
 
     fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
-        self.diagnose(sources, found);
+        if self.manner == Manner::Talkative {
+            self.diagnose(sources, found);
+        }
     }
 
     fn begins(&self, stage: &'static str) {

@@ -38,6 +38,8 @@ pub struct Run {
     pub options: Options,
     /// The checked model.
     pub model: Model,
+    /// What it probably does not mean: warnings.
+    pub warnings: Diagnostics,
 }
 
 /// Whether stages are kept after the next one is done.
@@ -168,6 +170,7 @@ impl<'w> Studio<'w> {
             sources,
             options,
             model,
+            warnings: found,
         })
     }
 
