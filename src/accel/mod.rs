@@ -8,6 +8,7 @@
 //! `f32` can do; [`crate::scene`] does so by normalising every group to the same size.
 
 mod build;
+mod extreme;
 mod node;
 mod stack;
 mod traverse;

@@ -27,6 +27,9 @@ const FADING: f64 = 0.12;
 /// What `auto_exposure` makes the typical pixel: the middle grey of photography, 18 % of white.
 pub const MIDDLE_GRAY: f64 = 0.18;
 
+/// A subject that fills less of the picture does not decide how bright it is.
+pub const LEAST_SUBJECT: f64 = 0.02;
+
 /// Edge in pixels of the blocks that are averaged before their logarithm is taken.
 const BLOCK: u32 = 8;
 
@@ -59,40 +62,64 @@ fn shoulder(c: Rgb) -> Rgb {
     }
 }
 
-/// The factor that brings the typical luminance of a picture to [`MIDDLE_GRAY`].
+/// The factor that brings the typical luminance of a picture's subject to [`MIDDLE_GRAY`].
 ///
-/// The typical luminance is the geometric mean over blocks of 8 × 8 pixels that are not black (nothing seen is not
-/// darkness): the log-average of [Reinhard2002, eq. 1](crate::references#reinhard2002), over blocks so that the grain of a
-/// picture with few samples does not pull it down. 1 for a black picture. For a film, decide it once.
+/// `is_subject` says of each pixel whether it shows a surface that does not shine by itself: the sky and lamps are shown as
+/// they come out, as a photographer would. If the subject fills less than [`LEAST_SUBJECT`] of the picture, all pixels count.
+/// The typical luminance is a geometric mean over blocks of 8 × 8 pixels, as the log-average of
+/// [Reinhard2002, eq. 1](crate::references#reinhard2002), over blocks so that the grain of a picture with few samples does
+/// not pull it down. Each block weighs with the root of its luminance, so that a large dark ground beyond the reach of a
+/// lamp does not count, and one that is black not at all. 1 for a black picture. For a film, decide it once.
+///
+/// # Panics
+/// If `is_subject` does not have one entry for each pixel.
 #[must_use]
-pub fn auto_exposure(image: &LinearImage) -> f64 {
-    let (mut sum, mut n) = (0.0, 0.0);
+pub fn auto_exposure(image: &LinearImage, is_subject: &[bool]) -> f64 {
+    assert_eq!(
+        image.pixels.len(),
+        is_subject.len(),
+        "invariant: one entry for each pixel"
+    );
+    let n_subject = is_subject.iter().filter(|&&is| is).count();
+    let counts_all = (n_subject as f64) < LEAST_SUBJECT * is_subject.len() as f64;
+    let (mut sum, mut weights) = (0.0, 0.0);
     for y0 in (0..image.height).step_by(BLOCK as usize) {
         for x0 in (0..image.width).step_by(BLOCK as usize) {
-            let luminance = block_luminance(image, x0, y0);
+            let counts = |pixel: usize| counts_all || is_subject[pixel];
+            let (luminance, n) = block_luminance(image, x0, y0, counts);
             if luminance > 0.0 && luminance.is_finite() {
-                sum += ln(luminance);
-                n += 1.0;
+                let weight = n * luminance.sqrt();
+                sum += weight * ln(luminance);
+                weights += weight;
             }
         }
     }
-    if n > 0.0 {
-        MIDDLE_GRAY / exp(sum / n)
+    if weights > 0.0 {
+        MIDDLE_GRAY / exp(sum / weights)
     } else {
         1.0
     }
 }
 
-/// Mean luminance of the block with this first pixel.
-fn block_luminance(image: &LinearImage, x0: u32, y0: u32) -> f64 {
+/// Mean luminance, and number, of the pixels that count in the block with this first pixel.
+fn block_luminance(
+    image: &LinearImage,
+    x0: u32,
+    y0: u32,
+    counts: impl Fn(usize) -> bool,
+) -> (f64, f64) {
     let (x1, y1) = (
         (x0 + BLOCK).min(image.width),
         (y0 + BLOCK).min(image.height),
     );
     let rows = (y0..y1).map(|y| (y as usize) * image.width as usize);
-    let pixels = rows.flat_map(|row| &image.pixels[row + x0 as usize..row + x1 as usize]);
-    let sum: f64 = pixels.map(|pixel| pixel.luminance()).sum();
-    sum / f64::from((x1 - x0) * (y1 - y0))
+    let pixels = rows.flat_map(|row| row + x0 as usize..row + x1 as usize);
+    let (sum, n) = pixels
+        .filter(|&pixel| counts(pixel))
+        .fold((0.0, 0.0), |(sum, n), pixel| {
+            (sum + image.pixels[pixel].luminance(), n + 1.0)
+        });
+    (sum / f64::max(n, 1.0), n)
 }
 
 /// The picture as sRGB bytes, red, green, blue, row by row: radiance × `exposure`, tone curve, sRGB transfer.
@@ -119,11 +146,26 @@ mod tests {
         }
     }
 
+    fn exposed(image: &LinearImage) -> f64 {
+        auto_exposure(image, &vec![true; image.pixels.len()])
+    }
+
+    /// A picture of 64 × 64 pixels with a square of `side` pixels in a corner.
+    fn square(side: usize, inside: f64, outside: f64) -> (LinearImage, Vec<bool>) {
+        let mut image = flat(64, 64, Rgb::splat(outside));
+        let mut is_subject = vec![false; 64 * 64];
+        for y in 0..side {
+            image.pixels[y * 64..y * 64 + side].fill(Rgb::splat(inside));
+            is_subject[y * 64..y * 64 + side].fill(true);
+        }
+        (image, is_subject)
+    }
+
     #[test]
     fn a_flat_picture_becomes_middle_gray() {
         for luminance in [1e-20, 0.3, 1e20] {
             let image = flat(19, 7, Rgb::splat(luminance));
-            let exposure = auto_exposure(&image);
+            let exposure = exposed(&image);
             assert!((exposure * luminance - 0.18).abs() < 1e-12);
             assert_eq!(to_srgb8(&image, exposure, ToneCurve::Shoulder)[0], 118);
         }
@@ -131,13 +173,24 @@ mod tests {
 
     #[test]
     fn black_around_the_subject_does_not_count_and_black_pictures_are_safe() {
-        let mut image = flat(64, 64, Rgb::BLACK);
-        assert_eq!(auto_exposure(&image), 1.0);
-        for y in 0..16 {
-            image.pixels[y * 64..y * 64 + 16].fill(Rgb::splat(0.5));
-        }
-        assert!((auto_exposure(&image) - 0.36).abs() < 1e-12);
-        assert_eq!(auto_exposure(&flat(0, 0, Rgb::BLACK)), 1.0);
+        assert_eq!(exposed(&flat(64, 64, Rgb::BLACK)), 1.0);
+        assert_eq!(exposed(&flat(0, 0, Rgb::BLACK)), 1.0);
+        assert!((exposed(&square(16, 0.5, 0.0).0) - 0.36).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_the_lamp_does_not_reach_hardly_counts() {
+        // A sixth of a picture is lit, the rest is 10,000 times darker: a plain log-average would overexpose 2000 times.
+        let exposure = exposed(&square(26, 1.0, 1e-4).0);
+        assert!(exposure < 3.0 * 0.18, "{exposure}");
+    }
+
+    #[test]
+    fn the_sky_round_the_subject_does_not_count_unless_the_subject_is_tiny() {
+        let (plant, is_subject) = square(16, 0.1, 3.0);
+        assert!((auto_exposure(&plant, &is_subject) - 1.8).abs() < 1e-12);
+        let (dot, is_subject) = square(4, 0.1, 3.0);
+        assert!(auto_exposure(&dot, &is_subject) < 0.07);
     }
 
     #[test]

@@ -76,6 +76,20 @@ impl UnitShape {
         }
     }
 
+    /// The largest value of `normal · p` over its points p.
+    #[must_use]
+    pub fn reach(&self, normal: DVec3) -> f64 {
+        match self {
+            Self::Sphere => normal.length(),
+            Self::Disk => normal.truncate().length(),
+            Self::Cube => normal.abs().element_sum(),
+            Self::Frustum(frustum) => {
+                let sideways = normal.truncate().length();
+                (frustum.base * sideways).max(frustum.top * sideways + normal.z)
+            }
+        }
+    }
+
     /// Whether the surface lies in one plane, so that a ray that starts on it cannot meet it again.
     #[must_use]
     pub fn is_flat(&self) -> bool {

@@ -10,7 +10,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use std::io::Cursor;
 
 /// Quality of written JPEG files, of 100: differences are not seen at normal size.
-const JPEG_QUALITY: u8 = 92;
+const JPEG_QUALITY: u8 = 85;
 
 /// A finished picture.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,8 +1,13 @@
 //! A film of radiances becomes a picture for a file.
 
+use crate::camera::Camera;
+use crate::color::Rgb;
 use crate::film::{LinearImage, tone};
 use crate::image::format::Encoding;
 use crate::image::{Format, Picture, Pixels};
+use crate::material::Material;
+use crate::scene::Scene;
+use glam::DVec2;
 
 /// The picture of `image` for a file of this format; `exposure` (a factor) applies to what is meant for eyes only.
 pub fn develop(image: &LinearImage, format: Format, exposure: f64) -> Picture {
@@ -20,6 +25,21 @@ pub fn develop(image: &LinearImage, format: Format, exposure: f64) -> Picture {
     }
 }
 
+/// Of each pixel, whether the middle of it shows a surface that does not shine by itself.
+pub fn subject(scene: &Scene, camera: &Camera, width: u32, height: u32) -> Vec<bool> {
+    let size = DVec2::new(f64::from(width), f64::from(height));
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let shows_subject = |(x, y)| {
+        let ray = camera.ray((DVec2::new(f64::from(x), f64::from(y)) + 0.5) / size);
+        scene.closest(&ray).is_some_and(|hit| {
+            let material = scene.surface(&ray, &hit).material;
+            let material = scene.materials().get(material.0 as usize);
+            !material.is_some_and(Material::is_emitter)
+        })
+    };
+    rows.map(shows_subject).collect()
+}
+
 /// The factor that a number of photographic stops stands for.
 pub fn factor(stops: f64) -> f64 {
     libm::exp2(stops)
@@ -28,7 +48,6 @@ pub fn factor(stops: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::Rgb;
 
     #[test]
     fn measurements_are_not_exposed_and_pictures_are() {

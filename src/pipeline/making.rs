@@ -84,14 +84,14 @@ impl Making<'_> {
         target: &PictureTarget,
     ) -> Result<Made, Failure> {
         let scene = studio.build(run, self.cancel)?;
-        let view = viewpoint::view(&run.options, &scene.bounds());
+        let view = viewpoint::of_scene(&run.options, &scene);
         let camera = viewpoint::camera(&run.sources, &run.options, &view)?;
         let viewing = self.viewing(run);
 
         self.audience.begins("preparing");
         let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
             let prepared = viewing.prepare(&scene)?;
-            let exposure = viewing.exposure(&prepared, &camera)?;
+            let exposure = viewing.exposure(&scene, &prepared, &camera)?;
             Ok::<_, Failure>((prepared, exposure))
         })?;
         self.audience.begins("rendering");
@@ -128,7 +128,7 @@ impl Making<'_> {
             return Err(Failure::Usage(message.to_owned()));
         }
         let scene = studio.build(run, self.cancel)?;
-        let start = viewpoint::view(&run.options, &scene.bounds());
+        let start = viewpoint::of_scene(&run.options, &scene);
         let flight = Flight::orbit(start, run.options.flight_frames.value);
         let frames = run.options.frames.value.clone().unwrap_or(flight.all());
         let viewing = self.viewing(run);
@@ -138,7 +138,7 @@ impl Making<'_> {
         let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
             let camera = viewpoint::camera(&run.sources, &run.options, &flight.view(0))?;
             let prepared = viewing.prepare(&scene)?;
-            let exposure = viewing.exposure(&prepared, &camera)?;
+            let exposure = viewing.exposure(&scene, &prepared, &camera)?;
             Ok::<_, Failure>((prepared, exposure))
         })?;
 

@@ -5,6 +5,7 @@ use crate::geometry::Shape;
 use crate::interpret::Summary;
 use crate::light::Environment;
 use crate::material::Material;
+use crate::math::Bounds3;
 use crate::math::angle::Angle;
 use crate::options::Options;
 use crate::options::value::{Daylight, Ground};
@@ -48,7 +49,7 @@ pub fn complete(description: &mut SceneDescription, model: &Summary, options: &O
         description.environment = Environment::daylight(from_x, elevation, turbidity, reflectance);
     }
     if wants_ground {
-        add_ground(description, reflectance);
+        add_ground(description, reflectance, &model.bounds);
     }
 }
 
@@ -60,11 +61,18 @@ fn world_shapes(description: &SceneDescription) -> impl Iterator<Item = &PlacedS
     root.into_iter().flat_map(|group| &group.shapes)
 }
 
-/// Adds the plane z = 0, a little lower where the model has a floor of its own there.
-fn add_ground(description: &mut SceneDescription, reflectance: Rgb) {
+/// How much of a model's height may be in the ground, as roots and feet of trunks are.
+const MOST_IN_GROUND: f64 = 0.05;
+
+/// Adds the plane z = 0, a little lower where the model has a floor of its own there, and under the whole model if more than a
+/// little of it is below: a drawing that grows downwards, or all round the origin, shall be seen.
+fn add_ground(description: &mut SceneDescription, reflectance: Rgb, bounds: &Bounds3) {
+    let below = -bounds.min.z;
+    let is_below = !bounds.is_empty() && below > MOST_IN_GROUND * bounds.diagonal().z;
+    let foot = if is_below { below } else { 0.0 };
     // Two surfaces in one place hide each other by chance: sink under a floor by a thousandth of its size.
     let floors = world_shapes(description).filter_map(floor_size);
-    let sunk = floors.fold(0.0, f64::max) / 1000.0;
+    let sunk = foot.max(floors.fold(0.0, f64::max) / 1000.0);
     let material = MaterialId(description.materials.len() as u32);
     description.materials.push(Material::lambert(reflectance));
     let ground = PlacedShape {
@@ -124,7 +132,6 @@ fn floor_size(placed: &PlacedShape) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::light::{Light, Sky};
-    use crate::math::Bounds3;
     use crate::options::Origin;
 
     fn model(shapes: Vec<Shape>) -> SceneDescription {
@@ -146,7 +153,15 @@ mod tests {
         }
     }
 
-    fn completed(mut description: SceneDescription, flags: &[(&str, &str)]) -> SceneDescription {
+    fn completed(description: SceneDescription, flags: &[(&str, &str)]) -> SceneDescription {
+        completed_within(description, flags, Bounds3::EMPTY)
+    }
+
+    fn completed_within(
+        mut description: SceneDescription,
+        flags: &[(&str, &str)],
+        bounds: Bounds3,
+    ) -> SceneDescription {
         let mut options = Options::default();
         for (key, text) in flags {
             options.set(key, text, Origin::Flag).unwrap();
@@ -154,7 +169,7 @@ mod tests {
         let model = Summary {
             has_light: !description.lights.is_empty(),
             has_plane: plane_height(&description).is_some(),
-            bounds: Bounds3::EMPTY,
+            bounds,
         };
         complete(&mut description, &model, &options);
         description
@@ -237,5 +252,22 @@ mod tests {
         );
         let own = completed(model(vec![Shape::Plane]), &[]);
         assert_eq!(world_shapes(&own).count(), 1);
+    }
+
+    #[test]
+    fn the_plane_lies_under_a_model_that_grows_downwards_and_at_0_under_roots() {
+        let height = |min: f64, max: f64| {
+            let (min, max) = (DVec3::new(-1.0, -1.0, min), DVec3::new(1.0, 1.0, max));
+            let flags = &[];
+            plane_height(&completed_within(
+                model(vec![BALL]),
+                flags,
+                Bounds3 { min, max },
+            ))
+        };
+        assert_eq!(height(-3.0, 0.5), Some(-3.0));
+        assert_eq!(height(-1.0, 1.0), Some(-1.0));
+        assert_eq!(height(-0.2, 9.8), Some(0.0));
+        assert_eq!(height(4.0, 5.0), Some(0.0));
     }
 }

@@ -79,7 +79,12 @@ impl Viewing<'_> {
     ///
     /// # Errors
     /// If it was stopped.
-    pub fn exposure(&self, prepared: &Prepared<'_>, camera: &Camera) -> Result<f64, Failure> {
+    pub fn exposure(
+        &self,
+        scene: &Scene,
+        prepared: &Prepared<'_>,
+        camera: &Camera,
+    ) -> Result<f64, Failure> {
         if let Some(stops) = self.options.exposure.value {
             return Ok(exposing::factor(stops));
         }
@@ -102,7 +107,11 @@ impl Viewing<'_> {
             &mut go_on,
         );
         match seen {
-            Ok(result) => Ok(tone::auto_exposure(&result.film.image())),
+            Ok(result) => {
+                let image = result.film.image();
+                let is_subject = exposing::subject(scene, camera, image.width, image.height);
+                Ok(tone::auto_exposure(&image, &is_subject))
+            }
             Err(RenderError::Cancelled { .. }) => Err(Failure::Stopped),
         }
     }

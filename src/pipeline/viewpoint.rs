@@ -2,17 +2,25 @@
 
 use super::failure::Failure;
 use super::sources::Sources;
-use crate::camera::{Camera, CameraError, View, framing};
+use crate::camera::framing::{self, Subject};
+use crate::camera::{Camera, CameraError, View};
 use crate::diag::Diagnostic;
 use crate::math::Bounds3;
 use crate::options::{Options, Origin};
+use crate::scene::Scene;
 use glam::DVec3;
 
-/// The view of the options; what they leave open frames `bounds`.
-pub fn view(options: &Options, bounds: &Bounds3) -> View {
+/// The view of the options; what they leave open frames the scene.
+pub fn of_scene(options: &Options, scene: &Scene) -> View {
+    let reach = &|normal| scene.reach(normal);
+    let bounds = scene.bounds();
+    view(options, &Subject { bounds, reach })
+}
+
+fn view(options: &Options, subject: &Subject<'_>) -> View {
     let aspect = options.size.value.aspect();
     let fov = options.fov.value;
-    let whole = framing::frame(bounds, fov, aspect);
+    let whole = framing::frame(subject, fov, aspect);
     let up = options.up.value;
     let view = match (options.eye.value, options.target.value) {
         (Some(eye), Some(target)) => View {
@@ -62,7 +70,11 @@ pub fn camera(sources: &Sources, options: &Options, view: &View) -> Result<Camer
 /// As [`camera`].
 pub fn check(sources: &Sources, options: &Options) -> Result<(), Failure> {
     let is_decided = options.eye.value.is_some() && options.target.value.is_some();
-    let view = view(options, &Bounds3::EMPTY);
+    let nothing = Subject {
+        bounds: Bounds3::EMPTY,
+        reach: &|_| 0.0,
+    };
+    let view = view(options, &nothing);
     if is_decided {
         camera(sources, options, &view).map(drop)
     } else {
@@ -118,19 +130,21 @@ mod tests {
         (sources, options)
     }
 
-    const BOX: Bounds3 = Bounds3 {
-        min: DVec3::ZERO,
-        max: DVec3::new(2.0, 2.0, 8.0),
+    /// An upright box.
+    const BOX: Subject<'static> = Subject {
+        bounds: Bounds3 {
+            min: DVec3::ZERO,
+            max: DVec3::new(2.0, 2.0, 8.0),
+        },
+        reach: &|normal| normal.max(DVec3::ZERO).dot(DVec3::new(2.0, 2.0, 8.0)),
     };
 
     #[test]
     fn what_is_left_open_frames_the_model() {
         let (_, options) = read("[camera]\neye = [9, 9, 9]", &[]);
         let seen = view(&options, &BOX);
-        assert_eq!(
-            (seen.eye, seen.target),
-            (DVec3::splat(9.0), DVec3::new(1.0, 1.0, 4.0))
-        );
+        assert_eq!(seen.eye, DVec3::splat(9.0));
+        assert!(seen.target.distance(DVec3::new(1.0, 1.0, 4.0)) < 0.5);
         let (_, options) = read("[camera]\ntarget = [0, 0, 0]", &[]);
         let (whole, seen) = (view(&Options::default(), &BOX), view(&options, &BOX));
         assert!((seen.eye - seen.target).distance(whole.eye - whole.target) < 1e-12);

@@ -44,6 +44,7 @@ pub mod description;
 mod emitter;
 mod error;
 mod group;
+mod outline;
 mod placement;
 mod plan;
 mod query;
