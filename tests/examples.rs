@@ -77,7 +77,7 @@ impl Example {
         let (mut studio, run) = self.open();
         let cancel = CancelToken::default();
         let scene = studio.build(&run, &cancel).unwrap();
-        let view = viewpoint::view(&run.options, &scene.bounds());
+        let view = viewpoint::of_scene(&run.options, &scene);
         let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
         let viewing = Viewing {
             world: &self.world,

@@ -105,3 +105,9 @@ pub const EDGE_MARGIN: f64 = 256.0 * f64::EPSILON;
 
 /// The largest part of a face that [`EDGE_MARGIN`] may become for faces that are tiny for where they are.
 pub const EDGE_MARGIN_LIMIT: f64 = 1e-3;
+
+/// Boxes that reach no further than this part of the scene's size beyond what was found are not opened when it is framed.
+///
+/// Nobody sees a hundred-thousandth of a picture's height; without it, the search for the furthest point would open every one of
+/// many things that reach equally far. Used by [`crate::scene`].
+pub const FRAMING_SLACK: f64 = 1e-5;

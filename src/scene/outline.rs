@@ -2,11 +2,8 @@
 
 use super::Scene;
 use super::group::{Group, ItemKind};
+use crate::math::tolerance::FRAMING_SLACK;
 use glam::{DAffine3, DVec3};
-
-/// Boxes that reach no further than this part of the whole scene's size beyond what was found are not opened. It keeps the
-/// search short where very much reaches equally far, and nobody sees it in a picture.
-const SLACK: f64 = 1e-5;
 
 impl Scene {
     /// The largest value of `normal · p` over all points p of the scene, infinite planes left out; -∞ if there are none.
@@ -18,7 +15,7 @@ impl Scene {
         let Some(root) = self.groups.last() else {
             return f64::NEG_INFINITY;
         };
-        let slack = self.bounds.diagonal().length() * SLACK;
+        let slack = self.bounds.diagonal().length() * FRAMING_SLACK;
         let from_root = self.to_root.inverse();
         self.group_reach(root, &from_root, normal, slack, f64::NEG_INFINITY)
     }
