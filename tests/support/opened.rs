@@ -1,0 +1,112 @@
+//! A model with its sidecar and some options, opened as the program opens it: grown, drawn, looked at.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use understory::diag::{Diagnostics, SourceMap};
+use understory::film::LinearImage;
+use understory::growth::Growth;
+use understory::integrator::CancelToken;
+use understory::math::Bounds3;
+use understory::options::{Options, Origin};
+use understory::pipeline::audience::Audience;
+use understory::pipeline::studio::{Keep, Run, Studio};
+use understory::pipeline::viewing::Viewing;
+use understory::pipeline::viewpoint;
+use understory::pipeline::world::Machine;
+
+/// Keeps what a model prints; a warning fails the test.
+#[derive(Default)]
+struct Listener {
+    printed: Mutex<String>,
+}
+
+impl Audience for Listener {
+    fn printed(&self, text: &str) {
+        self.printed.lock().unwrap().push_str(text);
+    }
+
+    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
+        panic!("{found:#?} in {sources:?}");
+    }
+
+    fn begins(&self, _: &'static str) {}
+
+    fn progress(&self, _: u64, _: u64) {}
+
+    fn ends(&self) {}
+}
+
+/// A model with some options of its own.
+pub(crate) struct Opened {
+    listener: Arc<Listener>,
+    world: Machine,
+    path: PathBuf,
+    flags: Options,
+}
+
+/// What is drawn.
+pub(crate) struct Drawn {
+    pub(crate) image: LinearImage,
+    /// Of all but the ground, in metres.
+    pub(crate) bounds: Bounds3,
+}
+
+impl Opened {
+    pub(crate) fn new(path: impl AsRef<Path>, flags: &[(&str, &str)]) -> Self {
+        let mut options = Options::default();
+        for (key, text) in flags {
+            options.set(key, text, Origin::Flag).unwrap();
+        }
+        Self {
+            listener: Arc::default(),
+            world: Machine::new(),
+            path: path.as_ref().to_owned(),
+            flags: options,
+        }
+    }
+
+    fn open(&self) -> (Studio<'_>, Run) {
+        let (audience, path) = (self.listener.clone(), self.path.clone());
+        let mut studio = Studio::new(&self.world, audience, path, Keep::Last);
+        let run = studio
+            .read(&self.flags)
+            .and_then(|opened| studio.check(opened))
+            .unwrap_or_else(|failure| panic!("{}: {failure:?}", self.path.display()));
+        (studio, run)
+    }
+
+    pub(crate) fn grow(&self) -> Growth {
+        let (mut studio, run) = self.open();
+        studio
+            .grow(&run, &CancelToken::default())
+            .unwrap_or_else(|failure| panic!("{}: {failure:?}", self.path.display()))
+    }
+
+    /// What the model has printed in all its runs.
+    pub(crate) fn printed(&self) -> String {
+        self.listener.printed.lock().unwrap().clone()
+    }
+
+    /// Grows it and draws it.
+    pub(crate) fn draw(&self) -> Drawn {
+        let (mut studio, run) = self.open();
+        let cancel = CancelToken::default();
+        let scene = studio
+            .build(&run, &cancel)
+            .unwrap_or_else(|failure| panic!("{}: {failure:?}", self.path.display()));
+        let view = viewpoint::of_scene(&run.options, &scene);
+        let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
+        let viewing = Viewing {
+            world: &self.world,
+            audience: &*self.listener,
+            options: &run.options,
+            cancel: &cancel,
+        };
+        let prepared = viewing.prepare(&scene).unwrap();
+        let shot = viewing.shoot(&prepared, &camera).unwrap();
+        Drawn {
+            image: shot.image,
+            bounds: scene.bounds(),
+        }
+    }
+}
