@@ -252,6 +252,82 @@ fn a_film_does_not_end_by_the_clock() {
 }
 
 #[test]
+fn a_flight_has_no_frames_beyond_its_length() {
+    let bench = Bench::new(TREE);
+    let fly = format!("fly m.rgg --orbit --flight-frames 12 -o f {SMALL}");
+    let message = bench.fail(&format!("{fly} --frames 10..13 --steps 1000000"), 2);
+    for word in ["10..13", "12 frames", "--flight-frames 13"] {
+        assert!(message.contains(word), "{message}");
+    }
+    bench.succeed(&format!("{fly} --frames 11..12"));
+}
+
+#[test]
+fn budgets_are_blamed_by_their_names() {
+    let bench = Bench::new(TREE);
+    let message = bench.fail("derive m.rgg --steps 9 --max-memory 640", 1);
+    assert!(message.contains("--max-memory"), "{message}");
+    assert!(!message.contains("--max-modules"), "{message}");
+    let message = bench.fail("derive m.rgg --steps 9 --max-modules 10", 1);
+    assert!(message.contains("--max-modules"), "{message}");
+}
+
+#[test]
+fn an_unknown_step_names_those_there_are_nearest_first() {
+    let bench =
+        Bench::new("public void sprout() [ ]\npublic void growUp() [ ]\npublic void run() [ ]\n");
+    let message = bench.fail("derive m.rgg --entry growup", 1);
+    assert!(message.contains("growUp, sprout, run"), "{message}");
+    let message = bench.fail("derive m.rgg --entry nosuch", 1);
+    assert!(message.contains("sprout, growUp, run"), "{message}");
+}
+
+/// Two to the sixtieth power of shapes, none like another.
+const ENDLESS: &str = "\
+module T(int d) ==> if (d > 0) ( T(d-1) RU(random(0,1)) F(0.1) T(d-1) );
+protected void init() [ Axiom ==> T(60); ]
+";
+
+#[test]
+fn bodies_without_end_are_stopped_by_a_budget_that_names_them() {
+    let bench = Bench::new(ENDLESS);
+    let line = format!("render m.rgg -o m.png {SMALL} --max-modules 20000");
+    let message = bench.fail(&line, 1);
+    for word in ["20000", "`T`", "m.rgg:1:"] {
+        assert!(message.contains(word), "{message}");
+    }
+    assert_eq!(bench.files().len(), 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_the_drawing() {
+    let bench = Bench::new(ENDLESS);
+    let line = format!("render m.rgg -o m.png {SMALL} --max-memory 1000000000000");
+    let line = format!("{line} --max-modules 1000000000000");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
+        .current_dir(bench.folder.path())
+        .args(line.split(' '))
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let asked = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(asked.unwrap().success());
+    // Not seen, the wish would leave it drawing until memory ends.
+    let deadline = std::time::Instant::now() + Duration::from_secs(20);
+    while child.try_wait().unwrap().is_none() && std::time::Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let _ = child.kill();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output.stderr).contains("stopped"));
+}
+
+#[test]
 fn every_format_is_written_and_replaced() {
     let bench = Bench::new(TREE);
     for suffix in ["png", "jpg", "webp", "exr", "hdr"] {

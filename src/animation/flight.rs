@@ -18,7 +18,7 @@ impl Flight {
         Self { start, n_frames }
     }
 
-    /// The camera's place in frame `frame`. After the last frame the flight begins again.
+    /// The camera's place in frame `frame`; a flight that goes on after its last frame begins again.
     pub fn view(&self, frame: u32) -> View {
         let n_frames = self.n_frames.get();
         orbit(

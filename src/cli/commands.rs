@@ -200,7 +200,7 @@ fn check_folder(world: &dyn World, path: &Path) -> Result<(), Failure> {
             "films as one `.{}` file are not in this version: name a folder for the frames (a path without a suffix)",
             suffix.to_string_lossy()
         ))),
-        (Entry::File, None) => Err(Failure::World(format!(
+        (Entry::File | Entry::Device, None) => Err(Failure::World(format!(
             "cannot write into `{}`: it is a file",
             path.display()
         ))),

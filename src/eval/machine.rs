@@ -174,7 +174,17 @@ impl Machine {
         self.n_ticks = 0;
         self.failed_step = None;
         self.check_at = CHECK_EVERY;
+        self.stand(stack_bytes);
+    }
+
+    /// From here on the stack of the thread that calls may grow by `stack_bytes`; the count of turns goes on.
+    pub fn stand(&mut self, stack_bytes: usize) {
         self.stack_floor = stack_address().saturating_sub(stack_bytes);
+    }
+
+    /// Whether the user wants the model to stop.
+    pub fn is_stopped(&self) -> bool {
+        (self.stop)()
     }
 
     /// Prints `text` as it is.

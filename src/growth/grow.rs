@@ -38,6 +38,8 @@ pub struct Growth {
     machine: Machine,
     options: GrowthOptions,
     n_steps: u64,
+    /// Bytes of stack that an instantiation body may use.
+    body_stack: usize,
 }
 
 impl Growth {
@@ -64,6 +66,7 @@ impl Growth {
             machine,
             options,
             n_steps: 0,
+            body_stack: SHALLOW,
         })
     }
 
@@ -168,13 +171,30 @@ impl Growth {
         self.program.declared_at(ty)
     }
 
+    /// Draws: instantiation bodies that run in `draw` have room for recursion and share one budget of turns and calls.
+    pub fn drawing<R: Send>(&mut self, draw: impl FnOnce(&mut Self) -> R + Send) -> R {
+        with_deep_stack(|bytes| {
+            self.machine.begin(bytes);
+            // The other half is for the bodies that stand in bodies.
+            self.body_stack = bytes / 2;
+            let drawn = draw(self);
+            self.body_stack = SHALLOW;
+            drawn
+        })
+    }
+
+    /// Whether the user wants the model to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.machine.is_stopped()
+    }
+
     /// Makes the floating nodes that the instantiation body of `node` draws (none, if it has none); give them back to
     /// [`Growth::free`]. Nodes among them may have bodies of their own.
     ///
     /// # Errors
     /// What went wrong in the body.
     pub fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Box<Diagnostic>> {
-        self.machine.begin(SHALLOW);
+        self.machine.stand(self.body_stack);
         self.program
             .instantiate(node, &mut self.machine)
             .map_err(boxed)
@@ -199,9 +219,10 @@ impl Growth {
             format!("the model has no public method `{wanted}()` to step"),
         );
         fault.primary = None;
-        let names: Vec<&str> = self.entries().collect();
+        let mut names: Vec<&str> = self.entries().collect();
         if let Some(near) = nearest(wanted, names.iter().copied()) {
             fault = fault.hint(format!("did you mean `--entry {near}`?"));
+            names.sort_by_key(|name| *name != near);
         }
         Err(Box::new(match names.as_slice() {
             [] => fault.hint("write `public void run() [ … ]` with the rules of one step"),

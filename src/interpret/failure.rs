@@ -42,6 +42,12 @@ pub fn explain(error: &SceneError, organs: &Organs) -> Diagnostic {
     diagnostic(Severity::Error, "scene", message, span)
 }
 
+/// The user wants no more.
+pub(super) fn stopped() -> Failure {
+    let message = "the drawing was stopped before it had finished".to_owned();
+    Box::new(diagnostic(Severity::Error, "cancelled", message, None))
+}
+
 /// A size or place that is no number.
 pub(super) fn not_finite(name: &str, span: Option<Span>) -> Failure {
     let message = format!("{name} has a size or place that is not a finite number");

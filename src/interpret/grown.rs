@@ -33,6 +33,10 @@ impl Source for Growth {
         self.free(made);
     }
 
+    fn is_stopped(&self) -> bool {
+        Self::is_stopped(self)
+    }
+
     fn declared_at(&self, ty: TypeId) -> Option<Span> {
         Self::declared_at(self, ty)
     }

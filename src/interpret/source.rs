@@ -27,6 +27,9 @@ pub trait Source {
     /// Frees what a body made.
     fn release(&mut self, made: Instantiated);
 
+    /// Whether the user wants the drawing to stop.
+    fn is_stopped(&self) -> bool;
+
     /// Where a module is declared.
     fn declared_at(&self, ty: TypeId) -> Option<Span>;
 }

@@ -71,6 +71,7 @@ struct World {
     bodies: Vec<(TypeId, Body, MakeBody)>,
     n_runs: usize,
     fails: bool,
+    is_stopped: bool,
 }
 
 impl World {
@@ -86,6 +87,7 @@ impl World {
             bodies: vec![],
             n_runs: 0,
             fails: false,
+            is_stopped: false,
         }
     }
 
@@ -193,6 +195,10 @@ impl Source for World {
         for node in made.nodes {
             self.graph.remove(node);
         }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.is_stopped
     }
 
     fn declared_at(&self, ty: TypeId) -> Option<Span> {

@@ -21,6 +21,9 @@ use crate::turtle::{Poses, TurtleState};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeSet;
 
+/// Nodes between two looks at whether the drawing shall stop.
+const CHECK_EVERY: u64 = 1 << 12;
+
 /// Where in the model the turtle draws.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
@@ -50,6 +53,7 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) poses: Poses,
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
+    n_nodes: u64,
     body_nodes: u64,
     /// Emptied, to be used again.
     spare_ways: Vec<Way>,
@@ -77,6 +81,7 @@ impl<'s, S: Source> Painter<'s, S> {
             poses: Poses::default(),
             prototypes: Prototypes::default(),
             instances: Instances::default(),
+            n_nodes: 0,
             body_nodes: 0,
             spare_ways: Vec::new(),
             bodies,
@@ -205,6 +210,10 @@ impl<'s, S: Source> Painter<'s, S> {
         state: &mut TurtleState,
         place: Place,
     ) -> Result<(), Failure> {
+        self.n_nodes += 1;
+        if self.n_nodes.is_multiple_of(CHECK_EVERY) && self.source.is_stopped() {
+            return Err(failure::stopped());
+        }
         if place.depth > 0 {
             self.count_body_node(node, place)?;
         }

@@ -1,6 +1,7 @@
 //! The stages of the language: text → checked model → grown graph → shapes.
 
 use super::audience::Audience;
+use super::budget;
 use super::failure::Failure;
 use super::sources::{Sources, placeless};
 use super::studio::Run;
@@ -96,13 +97,7 @@ pub fn grow(
     audience: &Arc<dyn Audience>,
     cancel: &CancelToken,
 ) -> Result<Growth, Failure> {
-    let blame = |diagnostic: Box<Diagnostic>| {
-        if cancel.is_cancelled() {
-            Failure::Stopped
-        } else {
-            Failure::model(&run.sources.map, *diagnostic)
-        }
-    };
+    let blame = |fault: Box<Diagnostic>| blame_growth(run, memory, cancel, *fault);
     let limits = eval::Limits::default();
     let nodes = run
         .options
@@ -137,6 +132,25 @@ pub fn grow(
     Ok(growth)
 }
 
+/// What a fault of the grown model means to the user.
+fn blame_growth(run: &Run, memory: u64, cancel: &CancelToken, mut fault: Diagnostic) -> Failure {
+    if cancel.is_cancelled() {
+        return Failure::Stopped;
+    }
+    let nodes = memory / BYTES_PER_MODULE;
+    if fault.slug == "module-limit" && nodes < run.options.max_modules.value.get() {
+        fault.message = format!(
+            "the model grows beyond {nodes} modules, which is all that {} of memory can hold",
+            budget::readable(memory)
+        );
+        fault.hints = vec![
+            "does a rule multiply without end? `--max-memory` allows more, if the machine has it"
+                .to_owned(),
+        ];
+    }
+    Failure::model(&run.sources.map, fault)
+}
+
 /// How many steps to make. A model that has no step method is complete after `init`, unless the user asked for steps.
 fn steps(options: &Options, growth: &Growth) -> u32 {
     let is_wanted =
@@ -164,7 +178,7 @@ pub fn draw(
         body_nodes: run.options.max_modules.value.get(),
         ..interpret::Limits::default()
     };
-    match interpret::interpret(growth, limits) {
+    match growth.drawing(|growth| interpret::interpret(growth, limits)) {
         Ok(drawn) => {
             let organs = Arc::new(drawn.organs);
             let (scene, summary) = (drawn.scene, drawn.summary);
@@ -177,8 +191,7 @@ pub fn draw(
                 drawn.warnings,
             ))
         }
-        Err(_) if cancel.is_cancelled() => Err(Failure::Stopped),
-        Err(diagnostic) => Err(Failure::model(&run.sources.map, *diagnostic)),
+        Err(fault) => Err(blame_growth(run, memory, cancel, *fault)),
     }
 }
 

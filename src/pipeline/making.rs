@@ -14,7 +14,7 @@ use crate::animation::{Flight, frame_name};
 use crate::diag::{Diagnostics, SourceMap};
 use crate::image::png_text;
 use crate::integrator::CancelToken;
-use crate::options::Stage;
+use crate::options::{Options, Stage};
 use std::path::Path;
 
 /// The text of a frame that tells what it was made from.
@@ -127,6 +127,7 @@ impl Making<'_> {
             let message = "a film has no `time`: its frames end after `samples`";
             return Err(Failure::Usage(message.to_owned()));
         }
+        check_frames(&run.options)?;
         let scene = studio.build(run, self.cancel)?;
         let start = viewpoint::of_scene(&run.options, &scene);
         let flight = Flight::orbit(start, run.options.flight_frames.value);
@@ -205,6 +206,18 @@ impl Making<'_> {
             .iter()
             .any(|(name, value)| name == FRAME_KEY && value == key);
         Ok(is_same.then(|| ContentHash::of([&file[..]])))
+    }
+}
+
+/// Refuses frames that the flight does not have.
+fn check_frames(options: &Options) -> Result<(), Failure> {
+    let length = options.flight_frames.value;
+    match &options.frames.value {
+        Some(frames) if frames.end > length.get() => Err(Failure::Usage(format!(
+            "`frames` {}..{} reach beyond the flight's {length} frames; `--flight-frames {}` makes it longer",
+            frames.start, frames.end, frames.end
+        ))),
+        _ => Ok(()),
     }
 }
 

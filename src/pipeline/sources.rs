@@ -70,6 +70,12 @@ impl Inputs {
                     "`{name}` is neither a `.rgg` file nor a folder"
                 )))
             }
+            Entry::Device => {
+                let name = model.display();
+                Err(Failure::World(format!(
+                    "cannot read `{name}`: it is not an ordinary file"
+                )))
+            }
             Entry::File | Entry::Missing => {
                 let beside = model.with_extension("toml");
                 let sidecar = (world.entry(&beside) == Entry::File).then_some(beside);

@@ -122,6 +122,7 @@ fn may_write(
     };
     match world.entry(path) {
         Entry::Folder => return refuse("it is a folder".into()),
+        Entry::Device => return refuse("it is not an ordinary file".into()),
         Entry::File => {
             let head = world
                 .head(path, MAGIC_LENGTH)
@@ -132,7 +133,8 @@ fn may_write(
         }
         Entry::Missing => {}
     }
-    let folder = folder_of(path);
+    let destination = world.destination(path);
+    let folder = folder_of(&destination);
     world
         .try_folder(folder)
         .map_err(|error| Failure::file("write files into", folder, &error))

@@ -7,13 +7,18 @@ use std::time::{Duration, Instant};
 /// No model file is larger than this many bytes: 256 MiB.
 const LARGEST_FILE: u64 = 1 << 28;
 
+/// Symbolic links that lead from one to the next, at most: as many as Linux follows.
+const MOST_LINKS: usize = 40;
+
 /// What a path leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entry {
     /// Nothing.
     Missing,
-    /// A file (or something that can be read like one).
+    /// An ordinary file.
     File,
+    /// A device, a pipe, a socket: reading it may never end, and it is not replaced.
+    Device,
     /// A folder.
     Folder,
 }
@@ -22,6 +27,9 @@ pub enum Entry {
 pub trait World: Sync {
     /// What `path` leads to.
     fn entry(&self, path: &Path) -> Entry;
+
+    /// Where a file at `path` really stands: at the end of all symbolic links.
+    fn destination(&self, path: &Path) -> PathBuf;
 
     /// The content of a file.
     ///
@@ -53,7 +61,7 @@ pub trait World: Sync {
     /// Why not.
     fn try_folder(&self, folder: &Path) -> io::Result<()>;
 
-    /// Puts a file in the place of `path`, whole or not at all.
+    /// Puts a file in the place of `path`, whole or not at all. A symbolic link stays; what it leads to is replaced.
     ///
     /// # Errors
     /// If it cannot be written; then `path` is as it was.
@@ -94,9 +102,21 @@ impl World for Machine {
     fn entry(&self, path: &Path) -> Entry {
         match std::fs::metadata(path) {
             Ok(data) if data.is_dir() => Entry::Folder,
-            Ok(_) => Entry::File,
+            Ok(data) if data.is_file() => Entry::File,
+            Ok(_) => Entry::Device,
             Err(_) => Entry::Missing,
         }
+    }
+
+    fn destination(&self, path: &Path) -> PathBuf {
+        let mut path = path.to_owned();
+        for _ in 0..MOST_LINKS {
+            let Ok(next) = std::fs::read_link(&path) else {
+                break;
+            };
+            path = folder_of(&path).join(next);
+        }
+        path
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
@@ -136,6 +156,7 @@ impl World for Machine {
     }
 
     fn replace(&self, path: &Path, content: &[u8]) -> io::Result<()> {
+        let path = &self.destination(path);
         let mut file = temporary(folder_of(path))?;
         file.write_all(content)?;
         file.as_file().sync_all()?;
@@ -229,6 +250,10 @@ pub(crate) mod fake {
             }
         }
 
+        fn destination(&self, path: &Path) -> PathBuf {
+            path.to_owned()
+        }
+
         fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
             let files = self.files.lock().unwrap();
             files
@@ -303,6 +328,28 @@ mod tests {
                 .is_err()
         );
         assert!(world.try_folder(&folder.path().join("no")).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_and_what_it_leads_to_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("far")).unwrap();
+        let link = |to: &str, from: &str| std::os::unix::fs::symlink(to, at(from)).unwrap();
+        link("far/b.png", "a.png");
+        link("c.png", "far/b.png");
+        let world = Machine::new();
+        for content in [b"one", b"two"] {
+            // The file at the end of the links need not be there yet.
+            world.replace(&at("a.png"), content).unwrap();
+            assert_eq!(std::fs::read(at("far/c.png")).unwrap(), content);
+            assert!(at("a.png").is_symlink() && at("far/b.png").is_symlink());
+            assert!(!at("far/c.png").is_symlink());
+        }
+        link("round.png", "round.png");
+        assert_eq!(world.entry(&at("round.png")), Entry::Missing);
+        assert_eq!(world.entry(Path::new("/dev/null")), Entry::Device);
     }
 
     #[cfg(target_os = "linux")]
