@@ -1,7 +1,6 @@
 //! A film of radiances becomes a picture for a file.
 
 use crate::camera::Camera;
-use crate::color::Rgb;
 use crate::film::{LinearImage, tone};
 use crate::image::format::Encoding;
 use crate::image::{Format, Picture, Pixels};
@@ -48,6 +47,7 @@ pub fn factor(stops: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::Rgb;
 
     #[test]
     fn measurements_are_not_exposed_and_pictures_are() {
