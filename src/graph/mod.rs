@@ -8,6 +8,7 @@ pub mod pattern;
 mod arena;
 mod edges;
 mod extents;
+mod links;
 mod fields;
 mod node_id;
 mod payload;

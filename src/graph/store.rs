@@ -1,8 +1,8 @@
 //! The graph itself: birth and death of nodes.
 
 use super::arena::{NIL, ObjectArena, WordArena};
-use super::edges::EdgeArena;
 use super::extents::Extents;
+use super::links::{Link, Links};
 use super::{FieldId, NodeId, Payload, TypeId, TypeTable};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub enum GraphError {
     SelfEdge,
 }
 
-/// What is kept of a node besides its words and edges. Edge lists run through the edges, see [`EdgeArena`].
+/// What is kept of a node besides its words: among others the first edge that leads to it, see [`Links`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Header {
     pub(super) type_id: TypeId,
@@ -34,8 +34,8 @@ pub(super) struct Header {
     words: u32,
     /// First outgoing edge, or [`NIL`].
     pub(super) first_out: u32,
-    /// First incoming edge, or [`NIL`].
-    pub(super) first_in: u32,
+    /// First incoming edge.
+    pub(super) link: Link,
     /// Place in the extent of its type, while it is in the graph.
     pub(super) extent_place: u32,
 }
@@ -69,7 +69,7 @@ pub(super) enum SideValue<O> {
 
 /// Typed nodes, directed edges between them, extents. `O` is what object fields hold.
 ///
-/// An F with three parameters and one edge takes 68 bytes: header 24, extent 4, words 12, edge 28.
+/// An F with three parameters and one edge takes 48 bytes: header with the edge 32, extent 4, words 12.
 #[derive(Clone, Debug)]
 pub struct Graph<O> {
     types: Arc<TypeTable>,
@@ -79,7 +79,7 @@ pub struct Graph<O> {
     pub(super) objects: ObjectArena<O>,
     /// Rare attributes by node and field. Never iterated.
     pub(super) side: HashMap<(u32, u16), SideValue<O>>,
-    pub(super) edges: EdgeArena,
+    pub(super) links: Links,
     pub(super) extents: Extents,
     pub(super) candidates: Vec<u32>,
     root: NodeId,
@@ -101,7 +101,7 @@ impl<O: Payload> Graph<O> {
             words: WordArena::default(),
             objects: ObjectArena::default(),
             side: HashMap::new(),
-            edges: EdgeArena::default(),
+            links: Links::default(),
             extents,
             candidates: vec![],
             root,
@@ -159,7 +159,7 @@ impl<O: Payload> Graph<O> {
 
     /// A new node with the default values of its type. Queries do not find it until [`Graph::insert`].
     pub fn create(&mut self, ty: TypeId) -> Result<NodeId, GraphError> {
-        if self.n_nodes() >= self.limit || self.words.len() > MOST_WORDS {
+        if self.n_nodes() >= self.limit.min(MOST_NODES) || self.words.len() > MOST_WORDS {
             return Err(GraphError::TooManyNodes { limit: self.limit });
         }
         let words = self.words.allocate(self.types[ty].template());
@@ -340,13 +340,15 @@ impl<O: Payload> Graph<O> {
     pub fn memory(&self) -> usize {
         size_of::<Header>() * self.nodes.len()
             + 4 * self.words.len()
-            + self.edges.memory()
+            + self.links.memory()
             + 4 * self.extents.n_places()
             + size_of::<O>() * self.objects.n_used()
             + size_of::<((u32, u16), SideValue<O>)>() * self.side.len()
     }
 }
 
+/// Nodes are numbered with 31 bits, see [`Links`].
+const MOST_NODES: usize = (1 << 31) - 2;
 /// Words are numbered with 32 bits; a little room is left for the last node.
 const MOST_WORDS: usize = u32::MAX as usize - (1 << 16);
 
@@ -357,7 +359,7 @@ impl Header {
         generation: 0,
         words: 0,
         first_out: NIL,
-        first_in: NIL,
+        link: Link::NONE,
         extent_place: 0,
     };
 }
@@ -461,7 +463,6 @@ mod tests {
 
     #[test]
     fn a_node_takes_few_bytes() {
-        assert!(size_of::<super::Header>() <= 24);
-        assert!(size_of::<super::super::edges::Edge>() <= 28);
+        assert!(size_of::<super::Header>() <= 32);
     }
 }

@@ -56,7 +56,7 @@ impl<O: Payload> Graph<O> {
             if flags & (LIVE | INSERTED) != LIVE | INSERTED || is_root {
                 continue;
             }
-            if self.nodes[index as usize].first_in == NIL {
+            if self.nodes[index as usize].link.from == NIL {
                 self.remove(self.id(index as usize));
             } else if flags & LOST != 0 {
                 doubtful.push(index);
@@ -82,16 +82,13 @@ impl<O: Payload> Graph<O> {
         let first = marked.len();
         let mut at = start;
         while at != self.root().index() && self.nodes[at].flags & REACHED == 0 {
-            let Header {
-                flags, first_in, ..
-            } = self.nodes[at];
-            let edge = self.edges.edges.get(first_in as usize);
-            let (Some(edge), false) = (edge, flags & ON_WAY != 0) else {
+            let Header { flags, link, .. } = self.nodes[at];
+            if link.from == NIL || flags & ON_WAY != 0 {
                 return false;
-            };
+            }
             self.nodes[at].flags |= ON_WAY;
             marked.push(at as u32);
-            at = edge.from as usize;
+            at = link.from as usize;
         }
         for &index in &marked[first..] {
             self.nodes[index as usize].flags |= REACHED;
@@ -105,12 +102,12 @@ impl<O: Payload> Graph<O> {
         while let Some(index) = open.pop() {
             let mut at = self.nodes[index].first_out;
             while at != NIL {
-                let edge = self.edges.edges[at as usize];
-                at = edge.next_out;
-                let target = &mut self.nodes[edge.to as usize];
+                let to = self.links.target(at) as usize;
+                at = self.links.link(&self.nodes, at).next_out;
+                let target = &mut self.nodes[to];
                 if target.flags & REACHED == 0 {
                     target.flags |= REACHED;
-                    open.push(edge.to as usize);
+                    open.push(to);
                 }
             }
         }

@@ -1,5 +1,6 @@
 //! Random changes of a graph against a simple model of it.
 
+use super::pattern::EdgeKind;
 use super::testing::{letters, new_node};
 use super::{EdgeBits, Graph, NodeId};
 use proptest::prelude::*;
@@ -9,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Clone, Debug)]
 enum Change {
     Grow(usize, bool),
-    Link(usize, usize),
+    Link(usize, usize, bool),
     Cut(usize, usize),
     Remove(usize),
     EndOfStep,
@@ -19,7 +20,8 @@ fn changes() -> impl Strategy<Value = Vec<Change>> {
     let pick = 0..1000_usize;
     let change = prop_oneof![
         6 => (pick.clone(), any::<bool>()).prop_map(|(at, branch)| Change::Grow(at, branch)),
-        2 => (pick.clone(), pick.clone()).prop_map(|(a, b)| Change::Link(a, b)),
+        3 => (pick.clone(), pick.clone(), any::<bool>())
+            .prop_map(|(a, b, own)| Change::Link(a, b, own)),
         2 => (pick.clone(), pick.clone()).prop_map(|(a, b)| Change::Cut(a, b)),
         1 => pick.prop_map(Change::Remove),
         2 => Just(Change::EndOfStep),
@@ -82,14 +84,17 @@ fn apply(change: &Change, graph: &mut Graph<()>, model: &mut Model) {
             model.nodes.push(node);
             model.edges.insert((parent, node), bits);
         }
-        Change::Link(a, b) => {
+        Change::Link(a, b, is_own) => {
             let (a, b) = (pick(model, a), pick(model, b));
+            let kind = if is_own {
+                EdgeBits::of(EdgeKind::User(3))
+            } else {
+                EdgeBits::REFINEMENT
+            };
             if a != b {
-                graph
-                    .add_edge(a, b, EdgeBits::REFINEMENT)
-                    .expect("two nodes");
+                graph.add_edge(a, b, kind).expect("two nodes");
                 let bits = model.edges.entry((a, b)).or_default();
-                *bits = bits.union(EdgeBits::REFINEMENT);
+                *bits = bits.union(kind);
             }
         }
         Change::Cut(a, b) => {

@@ -1,6 +1,7 @@
 //! Checks every invariant of a graph; for tests and debug builds.
 
 use super::arena::NIL;
+use super::links::Links;
 use super::store::{Graph, INSERTED, LIVE};
 use super::{EdgeBits, Payload};
 
@@ -42,46 +43,41 @@ impl<O: Payload> Graph<O> {
     }
 
     fn check_list(&self, index: usize, is_out: bool) -> Result<usize, String> {
-        let header = &self.nodes[index];
+        let (links, nodes) = (&self.links, &self.nodes);
         let first = if is_out {
-            header.first_out
+            nodes[index].first_out
         } else {
-            header.first_in
+            Links::first_in(nodes, index as u32)
         };
         let (mut at, mut previous, mut count) = (first, NIL, 0);
         while at != NIL {
-            let edge = &self.edges.edges[at as usize];
-            let (own, other, next, back) = if is_out {
-                (edge.from, edge.to, edge.next_out, edge.previous_out)
-            } else {
-                (edge.to, edge.from, edge.next_in, edge.previous_in)
-            };
-            let twin = self.edge_bits(self.id(edge.from as usize), self.id(edge.to as usize));
-            if own as usize != index || edge.bits == EdgeBits::NONE || twin != edge.bits {
+            let link = *links.link(nodes, at);
+            let (from, to) = (link.from as usize, links.target(at) as usize);
+            let (own, other) = if is_out { (from, to) } else { (to, from) };
+            let bits = links.bits(nodes, at);
+            let twin = self.edge_bits(self.id(from), self.id(to));
+            if own != index || bits == EdgeBits::NONE || twin != bits {
                 return Err(format!(
                     "edge {at} in the list of node {index} does not belong there"
                 ));
             }
-            if self.nodes[other as usize].flags & LIVE == 0 {
+            if nodes[other].flags & LIVE == 0 {
                 return Err(format!("edge {at} of node {index} ends at a missing node"));
             }
-            if previous != NIL && back != previous {
+            if is_out && previous != NIL && link.previous_out != previous {
                 return Err(format!("edge {at} of node {index} does not point back"));
             }
+            let next = if is_out {
+                link.next_out
+            } else {
+                links.next_in(nodes, at)
+            };
             (previous, at, count) = (at, next, count + 1);
             if count > self.n_edges() {
                 return Err(format!("the list of node {index} runs in a ring"));
             }
         }
-        let edge = self.edges.edges.get(first as usize);
-        let last = edge.map_or(NIL, |e| {
-            if is_out {
-                e.previous_out
-            } else {
-                e.previous_in
-            }
-        });
-        if last == previous {
+        if !is_out || first == NIL || links.link(nodes, first).previous_out == previous {
             Ok(count)
         } else {
             Err(format!("wrong last edge of node {index}"))
