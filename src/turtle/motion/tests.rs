@@ -560,3 +560,176 @@ fn an_uneven_scale_does_not_tilt_the_inclination() {
     let m = state.transform.matrix3;
     assert!((m.determinant() - 27.0).abs() < 1e-12);
 }
+
+/// The registers with the commands that set, add, multiply and reset them, and their first values.
+const REGISTERS: [(&str, Register, f32); 7] = [
+    ("L", Register::Length, 100.0),
+    ("D", Register::Diameter, 0.1),
+    ("V", Register::Tropism, 0.0),
+    ("N", Register::Parameter, 0.0),
+    ("C", Register::Carbon, 0.0),
+    ("H", Register::Heartwood, 0.0),
+    ("U", Register::InternodeCount, 0.0),
+];
+
+/// Global and local value after the command `X…` of each row, one after the other; a shoot and a move stand among them.
+const REGISTER_COMMANDS: [(&str, f32, f32); 13] = [
+    ("X(3)", 3.0, 3.0),
+    ("XAdd(2)", 5.0, 5.0),
+    ("XMul(2)", 10.0, 10.0),
+    ("Xl(7)", 10.0, 7.0),
+    ("XlAdd(1)", 10.0, 8.0),
+    ("XlMul(2)", 10.0, 16.0),
+    ("M(1)", 10.0, 16.0),
+    ("F(1)", 10.0, 10.0),
+    ("Xl(-1)", 10.0, -1.0),
+    ("XMul(-0.5)", -5.0, -5.0),
+    ("XAdd(-1)", -6.0, -6.0),
+    ("XlAdd(4)", -6.0, -2.0),
+    ("F0", -6.0, -6.0),
+];
+
+#[test]
+fn every_register_obeys_its_commands_and_no_others() {
+    for (letter, register, first) in REGISTERS {
+        let mut state = TurtleState::default();
+        assert_eq!(state.registers.global(register), first, "{letter}");
+        for (command, global, local) in REGISTER_COMMANDS {
+            let command = command.replace('X', letter);
+            for action in actions(&command) {
+                state.execute(&action);
+            }
+            let found = (
+                state.registers.global(register),
+                state.registers.local(register),
+            );
+            assert_eq!(found, (global, local), "{command}");
+            for (other, register, first) in REGISTERS.iter().filter(|row| row.0 != letter) {
+                assert_eq!(
+                    state.registers.global(*register),
+                    *first,
+                    "{command}: {other}"
+                );
+                assert_eq!(
+                    state.registers.local(*register),
+                    *first,
+                    "{command}: {other}"
+                );
+            }
+        }
+        let reset = after(&format!("{letter}(3) {letter}l(4) {letter}0")).registers;
+        assert_eq!(reset.global(register), first, "{letter}0");
+        assert_eq!(reset.local(register), first, "{letter}0");
+    }
+    let color = |commands: &str| after(commands).registers.color_index();
+    assert_eq!(color(""), 14);
+    assert_eq!(color("P(2)"), 2);
+    assert_eq!(color("P(2) Pl(3)"), 3);
+    assert_eq!(color("P(2) Pl(3) M(1)"), 3);
+    assert_eq!(color("P(2) Pl(3) F(1)"), 2);
+    assert_eq!(color("P(2) P0"), 14);
+}
+
+/// The table above names every register command there is.
+#[test]
+fn every_register_command_is_tested() {
+    let mut tested: Vec<String> = ["P", "P0", "Pl"].map(str::to_owned).to_vec();
+    for (letter, _, _) in REGISTERS {
+        for suffix in ["", "Add", "Mul", "0", "l", "lAdd", "lMul"] {
+            tested.push(format!("{letter}{suffix}"));
+        }
+    }
+    let is_assignment = |effect| matches!(effect, Effect::Assign(..));
+    let mut names: Vec<&str> = builtin_types()
+        .filter(|ty| is_assignment(ty.effect))
+        .map(|ty| ty.name)
+        .collect();
+    names.sort_unstable();
+    tested.sort_unstable();
+    assert_eq!(names, tested);
+}
+
+/// Steps that use the length register: shoots the local value (here 1), moves the global one (here 3).
+#[test]
+fn steps_use_the_length_register() {
+    for (step, z) in [
+        ("F0", 1.0),
+        ("FAdd(0.5)", 1.5),
+        ("FMul(0.5)", 0.5),
+        ("FRel(0.25)", -0.75),
+        ("M0", 3.0),
+        ("MAdd(0.5)", 3.5),
+        ("MMul(0.5)", 1.5),
+        ("MRel(0.25)", -2.25),
+        ("F(2)", 2.0),
+        ("M(2)", 2.0),
+    ] {
+        let state = after(&format!("L(3) Ll(1) {step}"));
+        assert_eq!(state.position(), DVec3::new(0.0, 0.0, z), "{step}");
+        let is_shoot = step.starts_with('F');
+        assert_eq!(state.generative_distance, 1 + u32::from(is_shoot), "{step}");
+        let local = state.registers.local(Register::Length);
+        assert_eq!(local, if is_shoot { 3.0 } else { 1.0 }, "{step}");
+    }
+}
+
+/// Where the local x, y and z axes look after a quarter turn, and back.
+#[test]
+fn every_turn_is_right_handed() {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    for (name, sign, axes) in [
+        ("RU", 1.0, [-z, y, x]),
+        ("RL", 1.0, [x, z, -y]),
+        ("RH", 1.0, [y, -x, z]),
+        ("Plus", 1.0, [-z, y, x]),
+        ("Minus", -1.0, [-z, y, x]),
+    ] {
+        let turned = after(&format!("{name}({})", sign * 90.0)).transform.matrix3;
+        assert_eq!(
+            turned,
+            DMat3::from_cols(axes[0], axes[1], axes[2]),
+            "{name}"
+        );
+        let back = after(&format!("{name}(37) {name}(-37)")).transform.matrix3;
+        assert!(back.abs_diff_eq(DMat3::IDENTITY, 1e-15), "{name}");
+        let other = after(&format!("{name}({})", sign * -90.0))
+            .transform
+            .matrix3;
+        assert_eq!(other, turned.transpose(), "{name}");
+    }
+    for (commands, same) in [
+        ("Rotate(90,0,0)", "RL(90)"),
+        ("Rotate(0,90,0)", "RU(90)"),
+        ("Rotate(0,0,90)", "RH(90)"),
+    ] {
+        assert_eq!(
+            after(commands).transform,
+            after(same).transform,
+            "{commands}"
+        );
+    }
+}
+
+/// A negative strength bends the other way, by the same angle from an upright head.
+#[test]
+fn tropisms_change_sides_with_their_sign() {
+    for (towards, away) in [
+        ("RD(1,0,0,0.5)", "RD(1,0,0,-0.5)"),
+        ("RD(1,0,0,0.5)", "RD(-1,0,0,0.5)"),
+        ("RP(4,0,0,0.5)", "RP(4,0,0,-0.5)"),
+        ("RP(4,0,0,0.5)", "RP(-4,0,0,0.5)"),
+    ] {
+        let (a, b) = (after(towards).head(), after(away).head());
+        assert!(a.x > 0.4, "{towards}: {a}");
+        assert!(
+            a.abs_diff_eq(DVec3::new(-b.x, b.y, b.z), 1e-15),
+            "{towards}: {a}, {b}"
+        );
+    }
+    // A plane across the head: towards it the head sinks, away from it it rises.
+    let slanted = after("RU(40)").head().z;
+    assert!(after("RU(40) RO(0,0,1,0.2)").head().z < slanted);
+    assert!(after("RU(40) RO(0,0,1,-0.2)").head().z > slanted);
+    assert!(after("RU(40) RV(0.2)").head().z < slanted);
+    assert!(after("RU(40) RV(-0.2)").head().z > slanted);
+}
