@@ -1,5 +1,10 @@
 //! The papers, books and standards that the code cites, one heading each. Documentation only.
 //!
+//! # Benthin2024
+//! C. Benthin, D. Meister, J. Barczak, R. Mehalwal, J. Tsakok, A. Kensler: H-PLOC: Hierarchical Parallel Locally-Ordered
+//! Clustering for Bounding Volume Hierarchy Construction. Proceedings of the ACM on Computer Graphics and Interactive
+//! Techniques 7(3), 2024.
+//!
 //! # BirdRiordan1986
 //! R. Bird, C. Riordan: Simple Solar Spectral Model for Direct and Diffuse Irradiance on Horizontal and Tilted Planes at the
 //! Earth's Surface for Cloudless Atmospheres. Journal of Climate and Applied Meteorology 25, 1986; also report SERI/TR-215-2436.
@@ -61,6 +66,14 @@
 //! # KhronosNeutral
 //! Khronos Group: Khronos PBR Neutral Tone Mapper, 2024. <https://github.com/KhronosGroup/ToneMapping>
 //!
+//! # Meister2018a
+//! D. Meister, J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction. IEEE Transactions on
+//! Visualization and Computer Graphics 24(3), 2018. <https://doi.org/10.1109/TVCG.2017.2669983>
+//!
+//! # Meister2018b
+//! D. Meister, J. Bittner: Parallel Reinsertion for Bounding Volume Hierarchy Optimization. Computer Graphics Forum 37(2),
+//! 2018. <https://doi.org/10.1111/cgf.13382>
+//!
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik
 //! und Mechanik 54(1), 1974. <https://doi.org/10.1002/zamm.19740540106>
@@ -100,10 +113,6 @@
 //! # Vose1991
 //! M. Vose: A Linear Algorithm for Generating Random Numbers with a Given Distribution. IEEE Transactions on Software
 //! Engineering 17(9), 1991. <https://doi.org/10.1109/32.92917>
-//!
-//! # Wald2007
-//! I. Wald: On fast Construction of SAH-based Bounding Volume Hierarchies. IEEE Symposium on Interactive Ray Tracing, 2007.
-//! <https://doi.org/10.1109/RT.2007.4342588>
 //!
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.

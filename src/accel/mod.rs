@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy over boxes. It knows nothing of what is in them.
 //!
 //! ```text
-//! boxes → build (binned surface area heuristic, 8-wide) → Bvh { nodes } + order of the boxes in the leaves
+//! boxes → build (by obvhs, then 8-wide) → Bvh { nodes } + order of the boxes in the leaves
 //! Bvh::traverse(ray, leaf) → calls `leaf` with ranges of that order, nearest boxes first
 //! ```
 //! Boxes and box tests are `f32`. They are conservative only if the caller widens the boxes by what rounding the ray to
