@@ -533,3 +533,25 @@ fn quiet_is_quiet_and_help_is_help() {
             .contains(env!("CARGO_PKG_VERSION"))
     );
 }
+
+#[test]
+fn files_in_folders_are_imported_and_missing_ones_named() {
+    let bench = Bench::new(
+        "import static sub.Params.*;\nmodule A(int n);\nprotected void init() [ Axiom ==> A(size); ]\n",
+    );
+    fs::create_dir(bench.path("sub")).unwrap();
+    bench.write("sub/Params.rgg", "static int size = 7;\n");
+    for model in ["m.rgg", "."] {
+        let tree = bench.succeed(&format!("derive {model} --print tree"));
+        assert!(tree.contains("A(7)"), "{tree}");
+    }
+    fs::rename(bench.path("sub/Params.rgg"), bench.path("Parms.rgg")).unwrap();
+    let message = bench.fail("check m.rgg", 1);
+    for word in ["`size`", "`sub/Params.rgg`", "`Parms.rgg`"] {
+        assert!(message.contains(word), "{message}");
+    }
+    bench.write("Tool.java", "class Tool { }\n");
+    bench.write("m.rgg", "protected void init() { Tool t = null; }\n");
+    let message = bench.fail("check m.rgg", 1);
+    assert!(message.contains("`Tool.java` is not read"), "{message}");
+}

@@ -222,6 +222,11 @@ impl Diagnostics {
         self.list.is_empty()
     }
 
+    /// All of them, to add to.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Diagnostic> {
+        self.list.iter_mut()
+    }
+
     /// All of them, sorted by place.
     pub fn sorted(&self) -> Vec<&Diagnostic> {
         let mut all: Vec<&Diagnostic> = self.list.iter().collect();

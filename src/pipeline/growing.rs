@@ -3,6 +3,7 @@
 use super::audience::Audience;
 use super::budget;
 use super::failure::Failure;
+use super::inputs::class_name;
 use super::sources::{Sources, placeless};
 use super::studio::Run;
 use crate::check::SourceModel;
@@ -16,8 +17,8 @@ use crate::options::{Options, Origin};
 use crate::scene::SceneError;
 use crate::scene::description::SceneDescription;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Memory that a typical organ takes in the graph, in bytes.
@@ -55,9 +56,8 @@ pub fn check(sources: &Sources) -> (Model, Diagnostics) {
         .map(|(id, file)| {
             let (ast, more) = crate::syntax::parse(id, &file.text);
             found.append(more);
-            let stem = Path::new(&*file.name).file_stem().unwrap_or_default();
             SourceModel {
-                name: stem.to_string_lossy().into_owned(),
+                name: class_name(Path::new(&*file.name)),
                 ast,
             }
         })
@@ -68,6 +68,7 @@ pub fn check(sources: &Sources) -> (Model, Diagnostics) {
     }
     let (model, more) = crate::check::check(&files);
     found.append(more);
+    hint_at_files(sources, &mut found);
     if !found.has_errors() && model.init.is_none() && model.entries.is_empty() {
         let names: Vec<String> = sources
             .map
@@ -85,6 +86,34 @@ pub fn check(sources: &Sources) -> (Model, Diagnostics) {
         found = placeless("empty-model", message).hint(hint).into();
     }
     (model, found)
+}
+
+/// Tells what of the unknown may stand in files that are missing or not read.
+fn hint_at_files(sources: &Sources, found: &mut Diagnostics) {
+    let mut told = BTreeSet::new();
+    let unknown = found.iter_mut().filter(|d| d.slug.starts_with("unknown-"));
+    for fault in unknown {
+        let means = |path: &&PathBuf| fault.message.contains(&format!("`{}`", class_name(path)));
+        if let Some(path) = sources.unread.iter().find(means) {
+            let (file, class) = (path.display(), class_name(path));
+            fault.hints.push(if path.extension().is_some_and(|e| e == "rgg") {
+                format!("`{file}` is not read: `import static {class}.*;` makes it part of the model")
+            } else {
+                format!("`{file}` is not read: write what is used of it in a `.rgg` file")
+            });
+            continue;
+        }
+        let Some(file) = fault.primary.as_ref().map(|label| label.span.file) else {
+            continue;
+        };
+        let by = sources.map.file(file).map_or("", |file| &*file.name);
+        let all = sources.missing.iter().enumerate();
+        for (number, missing) in all.filter(|(_, m)| m.by.display().to_string() == by) {
+            if told.insert(number) {
+                fault.hints.push(missing.to_string());
+            }
+        }
+    }
 }
 
 /// Grows a model by the steps that the options ask for, within `memory` bytes.

@@ -10,6 +10,7 @@ pub mod content_hash;
 pub mod exposing;
 pub mod failure;
 pub mod growing;
+pub mod inputs;
 pub mod making;
 pub mod report;
 pub mod sources;

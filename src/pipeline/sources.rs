@@ -2,10 +2,11 @@
 
 use super::content_hash::ContentHash;
 use super::failure::Failure;
-use super::world::{Entry, World};
+use super::inputs::{Inputs, MissingImport};
+use super::world::World;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Severity, SourceMap};
 use crate::options::Options;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Everything that was read for a run.
 #[derive(Clone, Debug)]
@@ -16,77 +17,15 @@ pub struct Sources {
     pub models: Vec<FileId>,
     /// The file beside it, if there is one.
     pub sidecar: Option<FileId>,
+    /// Imports for which there is no file.
+    pub missing: Vec<MissingImport>,
+    /// Texts of the same project that were not read.
+    pub unread: Vec<PathBuf>,
     /// Equal for equal names and texts of the model's files.
     pub model_hash: ContentHash,
 }
 
-/// Where the parts of a model are, found but not read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Inputs {
-    /// The files of the model, sorted.
-    pub models: Vec<PathBuf>,
-    /// The file beside it, if there is one.
-    pub sidecar: Option<PathBuf>,
-}
-
 impl Inputs {
-    /// Finds the files of `model`, a `.rgg` file or a folder of them.
-    ///
-    /// # Errors
-    /// If there is no such model.
-    pub fn find(world: &dyn World, model: &Path) -> Result<Self, Failure> {
-        let has_suffix = |path: &Path, suffix: &str| path.extension().is_some_and(|e| e == suffix);
-        match world.entry(model) {
-            Entry::Folder => {
-                let all = world
-                    .list(model)
-                    .map_err(|e| Failure::file("read", model, &e))?;
-                let with = |suffix: &str| -> Vec<PathBuf> {
-                    all.iter()
-                        .filter(|path| has_suffix(path, suffix))
-                        .cloned()
-                        .collect()
-                };
-                let (models, mut sidecars) = (with("rgg"), with("toml"));
-                if models.is_empty() {
-                    let name = model.display();
-                    return Err(Failure::World(format!(
-                        "folder `{name}` holds no `.rgg` file"
-                    )));
-                }
-                if sidecars.len() > 1 {
-                    let name = model.display();
-                    let message = format!("folder `{name}` holds more than one `.toml` file");
-                    return Err(Failure::World(message));
-                }
-                Ok(Self {
-                    models,
-                    sidecar: sidecars.pop(),
-                })
-            }
-            _ if !has_suffix(model, "rgg") => {
-                let name = model.display();
-                Err(Failure::Usage(format!(
-                    "`{name}` is neither a `.rgg` file nor a folder"
-                )))
-            }
-            Entry::Device => {
-                let name = model.display();
-                Err(Failure::World(format!(
-                    "cannot read `{name}`: it is not an ordinary file"
-                )))
-            }
-            Entry::File | Entry::Missing => {
-                let beside = model.with_extension("toml");
-                let sidecar = (world.entry(&beside) == Entry::File).then_some(beside);
-                Ok(Self {
-                    models: vec![model.to_owned()],
-                    sidecar,
-                })
-            }
-        }
-    }
-
     /// Reads them all.
     ///
     /// # Errors
@@ -125,6 +64,8 @@ impl Inputs {
             map,
             models,
             sidecar,
+            missing: self.missing.clone(),
+            unread: self.unread.clone(),
             model_hash,
         })
     }
@@ -163,37 +104,10 @@ mod tests {
     use super::*;
     use crate::options::Origin;
     use crate::pipeline::world::fake::FakeWorld;
+    use std::path::Path;
 
     fn find(world: &FakeWorld, model: &str) -> Result<Inputs, Failure> {
         Inputs::find(world, Path::new(model))
-    }
-
-    #[test]
-    fn a_model_is_a_file_or_a_folder_with_or_without_something_beside_it() {
-        let world = FakeWorld::default();
-        for file in [
-            "a/one.rgg",
-            "a/two.rgg",
-            "a/a.toml",
-            "b/one.rgg",
-            "c/readme.txt",
-        ] {
-            world.put(file, "");
-        }
-        let inputs = find(&world, "a").unwrap();
-        assert_eq!(
-            inputs.models,
-            [Path::new("a/one.rgg"), Path::new("a/two.rgg")]
-        );
-        assert_eq!(inputs.sidecar.as_deref(), Some(Path::new("a/a.toml")));
-        assert_eq!(find(&world, "b/one.rgg").unwrap().sidecar, None);
-        assert!(matches!(find(&world, "c"), Err(Failure::World(_))));
-        assert!(matches!(
-            find(&world, "c/readme.txt"),
-            Err(Failure::Usage(_))
-        ));
-        let missing = find(&world, "c/none.rgg").unwrap().read(&world);
-        assert!(matches!(missing, Err(Failure::World(text)) if text.contains("c/none.rgg")));
     }
 
     #[test]

@@ -109,7 +109,7 @@ fn blame(sources: &Sources, options: &Options, error: &CameraError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::sources::Inputs;
+    use crate::pipeline::inputs::Inputs;
     use crate::pipeline::world::fake::FakeWorld;
     use glam::DVec3;
     use std::path::Path;

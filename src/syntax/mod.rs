@@ -12,6 +12,7 @@ mod brackets;
 mod cut;
 mod excerpt;
 mod explain;
+mod imports;
 mod mistakes;
 mod parse;
 #[cfg(test)]
@@ -19,6 +20,8 @@ mod pretty;
 mod scan;
 #[cfg(test)]
 mod tests;
+
+pub use imports::{ImportNames, imports};
 
 use crate::diag::{Diagnostics, FileId};
 

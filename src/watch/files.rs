@@ -1,9 +1,10 @@
 //! Events of the file system, for the files of one model.
 
 use super::session::Event;
+use crate::pipeline::inputs::Inputs;
 use crate::pipeline::world::{Entry, World, folder_of};
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::mpsc::Sender;
 
 /// Sends [`Event::Touched`] whenever something happens to a file of `model`, until the result is dropped.
@@ -18,40 +19,35 @@ pub fn follow(
     model: &Path,
     events: Sender<Event>,
 ) -> notify::Result<RecommendedWatcher> {
-    let is_folder = world.entry(model) == Entry::Folder;
-    let folder = if is_folder { model } else { folder_of(model) };
-    let files = if is_folder {
-        None
-    } else {
-        Some([model.to_owned(), model.with_extension("toml")])
-    };
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
         // An error (a queue that ran over) may hide anything, so it counts as a touch.
         let concerns = event.map_or(true, |event| {
             !matches!(event.kind, EventKind::Access(_))
-                && event.paths.iter().any(|path| belongs(path, files.as_ref()))
+                && event.paths.iter().any(|path| belongs(path))
         });
         if concerns {
             // Nobody listens any more only when watching ends.
             let _ = events.send(Event::Touched);
         }
     })?;
-    watcher.watch(folder, RecursiveMode::NonRecursive)?;
+    // Files that are imported only later are seen by looking once a second.
+    let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs::only(model));
+    let mut folders: Vec<&Path> = inputs.models.iter().map(|file| folder_of(file)).collect();
+    if world.entry(model) == Entry::Folder {
+        folders.push(model);
+    }
+    folders.sort_unstable();
+    folders.dedup();
+    for folder in folders {
+        watcher.watch(folder, RecursiveMode::NonRecursive)?;
+    }
     Ok(watcher)
 }
 
-/// Whether a file in the watched folder is (or may be) a part of the model: one of `files`, or any of a folder's.
-///
-/// Compares names only: the system may know the folder by another path than the user.
-fn belongs(path: &Path, files: Option<&[PathBuf; 2]>) -> bool {
-    match files {
-        Some(files) => files
-            .iter()
-            .any(|file| file.file_name() == path.file_name()),
-        None => path
-            .extension()
-            .is_some_and(|suffix| suffix == "rgg" || suffix == "toml"),
-    }
+/// Whether a file in a watched folder may be a part of the model.
+fn belongs(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|suffix| suffix == "rgg" || suffix == "toml")
 }
 
 #[cfg(test)]
@@ -60,21 +56,13 @@ mod tests {
 
     #[test]
     fn pictures_beside_the_model_are_not_part_of_it() {
-        let files = [PathBuf::from("d/plant.rgg"), PathBuf::from("d/plant.toml")];
-        let cases = [
+        for (name, expected) in [
             ("plant.rgg", true),
             ("plant.toml", true),
             ("plant.png", false),
-            ("tree.rgg", false),
-        ];
-        for (name, expected) in cases {
-            assert_eq!(
-                belongs(&Path::new("/abs/d").join(name), Some(&files)),
-                expected,
-                "{name}"
-            );
+            ("plant.rgg~", false),
+        ] {
+            assert_eq!(belongs(&Path::new("/abs/d").join(name)), expected, "{name}");
         }
-        assert!(belongs(Path::new("/abs/d/tree.rgg"), None));
-        assert!(!belongs(Path::new("/abs/d/tree.rgg~"), None));
     }
 }

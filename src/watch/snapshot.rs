@@ -1,7 +1,7 @@
 //! What the inputs of a model contain at one moment.
 
 use crate::pipeline::content_hash::ContentHash;
-use crate::pipeline::sources::Inputs;
+use crate::pipeline::inputs::Inputs;
 use crate::pipeline::world::World;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,10 +15,7 @@ pub struct Snapshot {
 impl Snapshot {
     /// Looks at the inputs of `model` now.
     pub fn take(world: &dyn World, model: &Path) -> Self {
-        let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs {
-            models: vec![model.to_owned()],
-            sidecar: None,
-        });
+        let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs::only(model));
         let read = |path: PathBuf| {
             let hash = world
                 .read(&path)
