@@ -27,6 +27,7 @@ impl Checker<'_> {
             statics,
             init,
             entries,
+            made_at: std::mem::take(&mut self.made_at),
         }
     }
 

@@ -438,6 +438,7 @@ impl Checker<'_> {
         }
         let node = self.constructor_call(id, args, span)?;
         self.note_new(id);
+        self.made_at.entry(id).or_default().push(span);
         Some(Expr {
             kind: ExprKind::NewNode(Box::new(node)),
             ty: Type::Node(id),

@@ -45,7 +45,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 /// Names of the functions over several values (`sum`, `count`, …).
 pub use aggregate::NAMES as AGGREGATES;
 
-use crate::diag::{Diagnostic, Diagnostics};
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::graph::{TypeId, TypeTable};
 use crate::syntax::ast;
 use crate::turtle;
@@ -101,6 +101,8 @@ struct Checker<'a> {
     assigned: BTreeSet<StaticId>,
     /// Names of types that were refused where they are declared; their uses are passed over.
     refused: HashSet<String>,
+    /// Where nodes of each type are made.
+    made_at: BTreeMap<TypeId, Vec<Span>>,
     /// What each body does.
     facts: BTreeMap<Body, Facts>,
     /// Whether any element of an array is ever assigned.
@@ -129,6 +131,7 @@ impl<'a> Checker<'a> {
             static_values: HashMap::new(),
             assigned: BTreeSet::new(),
             refused: HashSet::new(),
+            made_at: BTreeMap::new(),
             facts: BTreeMap::new(),
             writes_elements: false,
             cx: Context::default(),

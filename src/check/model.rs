@@ -1,6 +1,8 @@
 //! The checked model: every name resolved, every expression typed, every slot numbered. What [`check`](super) makes and
 //! `eval` compiles; nothing here can be misspelt any more.
 
+use std::collections::BTreeMap;
+
 use crate::diag::Span;
 use crate::graph::pattern::{EdgeKind, EdgeWay, Pattern};
 use crate::graph::{FieldId, TypeId, TypeTable};
@@ -36,6 +38,8 @@ pub struct Model {
     pub init: Option<MethodId>,
     /// Public methods without parameters that can be stepped (`--entry`), with their names.
     pub entries: Vec<(String, MethodId)>,
+    /// Where in the text nodes of each type are made, in the order of checking.
+    pub made_at: BTreeMap<TypeId, Vec<Span>>,
 }
 
 /// A module of the model.

@@ -1,5 +1,6 @@
 //! A compiled model.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::code::{Exec, Flow};
@@ -31,6 +32,7 @@ pub struct Program {
     statics: Vec<Body>,
     init: Option<MethodId>,
     entries: Vec<(String, MethodId)>,
+    made_at: BTreeMap<TypeId, Vec<Span>>,
 }
 
 /// A method.
@@ -93,6 +95,7 @@ impl Program {
             statics,
             init,
             entries,
+            made_at: model.made_at.clone(),
             outline,
         }
     }
@@ -127,6 +130,11 @@ impl Program {
             .get(usize::from(ty.0))?
             .as_ref()
             .map(|module| module.span)
+    }
+
+    /// Where nodes of a type are made; empty if nowhere.
+    pub fn made_at(&self, ty: TypeId) -> &[Span] {
+        self.made_at.get(&ty).map_or(&[], Vec::as_slice)
     }
 
     /// Whether a type has an instantiation body, and whether that depends on nothing but the node's fields.

@@ -120,6 +120,13 @@ impl<O: Payload> Graph<O> {
         }
     }
 
+    /// Name and constructor arguments of a node: `F(1,0.1)`.
+    pub fn node_text(&self, node: NodeId) -> String {
+        let mut text = String::new();
+        self.write_node(node, &mut text);
+        text
+    }
+
     /// Name and constructor arguments.
     fn write_node(&self, node: NodeId, text: &mut String) {
         self.write_name(node, text);

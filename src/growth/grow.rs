@@ -171,6 +171,11 @@ impl Growth {
         self.program.declared_at(ty)
     }
 
+    /// Where in the model's text nodes of a type are made.
+    pub fn made_at(&self, ty: TypeId) -> &[Span] {
+        self.program.made_at(ty)
+    }
+
     /// Draws: instantiation bodies that run in `draw` have room for recursion and share one budget of turns and calls.
     pub fn drawing<R: Send>(&mut self, draw: impl FnOnce(&mut Self) -> R + Send) -> R {
         with_deep_stack(|bytes| {

@@ -153,8 +153,7 @@ impl<S: Source> Painter<'_, S> {
             shape.to_group = state.transform * shape.to_group;
             shape.organ = self.organ(node, inside);
             if !shape.to_group.is_finite() {
-                let (name, span) = (self.name(node, inside), self.span(node, inside));
-                return Err(failure::not_finite(&name, span));
+                return Err(self.not_finite(node, inside));
             }
             if self.has_extent(node, &shape.to_group) {
                 self.push_shape(shape, node, inside)?;

@@ -4,6 +4,9 @@ use super::organs::Organs;
 use crate::diag::{Diagnostic, Label, Severity, Span};
 use crate::scene::SceneError;
 
+/// Other places that a message shows, at most.
+const MOST_PLACES: usize = 3;
+
 /// Why a model cannot be drawn.
 pub type Failure = Box<Diagnostic>;
 
@@ -39,7 +42,32 @@ pub fn explain(error: &SceneError, organs: &Organs) -> Diagnostic {
         None => format!("the model cannot be drawn: {error}"),
     };
     let span = organ.and_then(|organ| organs.declared_at(organ));
-    diagnostic(Severity::Error, "scene", message, span)
+    let fault = diagnostic(Severity::Error, "scene", message, span);
+    match organ {
+        Some(organ) => made_at(fault, organs.made_at(organ)),
+        None => fault,
+    }
+}
+
+/// Adds where nodes of the kind at fault are made: which of the places made this very node is not remembered.
+pub(super) fn made_at(mut fault: Diagnostic, places: &[Span]) -> Diagnostic {
+    let text = if places.len() == 1 {
+        "made here"
+    } else {
+        "perhaps made here"
+    };
+    let mut labels = places.iter().map(|&span| Label {
+        span,
+        text: text.to_owned(),
+    });
+    if fault.primary.is_none() {
+        fault.primary = labels.next();
+    }
+    fault.secondary.extend(labels.by_ref().take(MOST_PLACES));
+    match labels.len() {
+        0 => fault,
+        n => fault.hint(format!("nodes of this kind are made in {n} more places")),
+    }
 }
 
 /// The user wants no more.
@@ -49,11 +77,12 @@ pub(super) fn stopped() -> Failure {
 }
 
 /// A size or place that is no number.
-pub(super) fn not_finite(name: &str, span: Option<Span>) -> Failure {
+pub(super) fn not_finite(name: &str, span: Option<Span>, made: &[Span]) -> Failure {
     let message = format!("{name} has a size or place that is not a finite number");
     let hint =
         "look for a division by 0, a root of a negative number or an overflow in its parameters";
-    Box::new(diagnostic(Severity::Error, "not-finite", message, span).hint(hint))
+    let fault = diagnostic(Severity::Error, "not-finite", message, span);
+    Box::new(made_at(fault, made).hint(hint))
 }
 
 /// More geometry than fits.

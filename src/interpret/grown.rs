@@ -40,6 +40,10 @@ impl Source for Growth {
     fn declared_at(&self, ty: TypeId) -> Option<Span> {
         Self::declared_at(self, ty)
     }
+
+    fn made_at(&self, ty: TypeId) -> &[Span] {
+        Self::made_at(self, ty)
+    }
 }
 
 impl Appearance for Value {

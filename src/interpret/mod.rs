@@ -11,6 +11,7 @@
 //!   surfaces    shader, colour or lamp of a node
 //!   materials   shaders and colours → materials, each once
 //!   lamps       lights → sources, emission
+//!   blame       which node is at fault, and where it was made
 //!   canvas      what has been drawn so far
 //!   organs      which node a primitive belongs to
 //! ```
@@ -18,6 +19,7 @@
 //! several edges lead to it. Drawing is a pure function of the graph: no order of threads or of hashing shows in it.
 
 mod appearance;
+mod blame;
 mod body;
 mod canvas;
 mod failure;

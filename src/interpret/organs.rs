@@ -21,14 +21,21 @@ pub struct Organs {
     types: Arc<TypeTable>,
     /// Where each type is declared.
     spans: Vec<Option<Span>>,
+    /// Where nodes of each type are made.
+    made: Vec<Vec<Span>>,
     list: Vec<Organ>,
 }
 
 impl Organs {
-    pub(super) const fn new(types: Arc<TypeTable>, spans: Vec<Option<Span>>) -> Self {
+    pub(super) const fn new(
+        types: Arc<TypeTable>,
+        spans: Vec<Option<Span>>,
+        made: Vec<Vec<Span>>,
+    ) -> Self {
         Self {
             types,
             spans,
+            made,
             list: Vec::new(),
         }
     }
@@ -50,6 +57,14 @@ impl Organs {
     pub fn declared_at(&self, organ: OrganId) -> Option<Span> {
         let ty = self.get(organ)?.type_id;
         self.spans.get(usize::from(ty.0)).copied().flatten()
+    }
+
+    /// Where in the text nodes of the organ's type are made.
+    #[must_use]
+    pub fn made_at(&self, organ: OrganId) -> &[Span] {
+        let ty = self.get(organ).map(|organ| usize::from(organ.type_id.0));
+        ty.and_then(|ty| self.made.get(ty))
+            .map_or(&[], Vec::as_slice)
     }
 
     /// All organs, in the order of their numbers.

@@ -32,6 +32,9 @@ pub trait Source {
 
     /// Where a module is declared.
     fn declared_at(&self, ty: TypeId) -> Option<Span>;
+
+    /// Where in the text nodes of a type are made.
+    fn made_at(&self, ty: TypeId) -> &[Span];
 }
 
 /// What is known of an instantiation body without running it.

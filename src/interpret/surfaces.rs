@@ -1,7 +1,7 @@
 //! How what a node draws looks: shader, colour, lamp.
 
 use super::appearance::{Appearance, Lamp, LampKind, Surface};
-use super::failure::{self, Failure};
+use super::failure::Failure;
 use super::lamps::{Shining, emission, is_possible, shine};
 use super::shapes::{FIELDS, parallelogram_area};
 use super::source::Source;
@@ -115,10 +115,7 @@ impl<S: Source> Painter<'_, S> {
         }
         if !state.transform.is_finite() {
             let place = Place::default();
-            return Err(failure::not_finite(
-                &self.name(node, place),
-                self.span(node, place),
-            ));
+            return Err(self.not_finite(node, place));
         }
         match shine(&lamp, state) {
             Shining::Dark => {}

@@ -63,6 +63,20 @@ impl Appearance for Object {
     }
 }
 
+/// Where built-in nodes are made: in the declaration of a module, and elsewhere.
+static MADE: [Span; 2] = [
+    Span {
+        file: FileId(0),
+        start: 5,
+        end: 7,
+    },
+    Span {
+        file: FileId(0),
+        start: 20,
+        end: 24,
+    },
+];
+
 type MakeBody = fn(&mut World, &mut Instantiated);
 
 /// A hand-made model.
@@ -204,6 +218,14 @@ impl Source for World {
     fn declared_at(&self, ty: TypeId) -> Option<Span> {
         let is_module = crate::turtle::builtin(ty).is_none();
         is_module.then(|| Span::new(FileId(0), 3, 9))
+    }
+
+    fn made_at(&self, ty: TypeId) -> &[Span] {
+        if crate::turtle::builtin(ty).is_some() {
+            &MADE
+        } else {
+            &[]
+        }
     }
 }
 
@@ -566,6 +588,16 @@ fn endless_bodies_are_stopped() {
 }
 
 #[test]
+fn drawing_stops_when_told() {
+    let mut world = World::new(&[]);
+    let root = world.root();
+    world.grow(root, &"F(1) ".repeat(5000));
+    assert_eq!(shapes(&world.draw()).len(), 5000);
+    world.is_stopped = true;
+    assert_eq!(world.refuse(Limits::default()).slug, "cancelled");
+}
+
+#[test]
 fn failing_bodies_are_named() {
     let mut world = World::new(&["Leaf"]);
     world.define("Leaf", false, |w, out| make(w, out, "F(1)"));
@@ -632,17 +664,24 @@ fn instances_within_themselves_are_refused() {
 
 #[test]
 fn impossible_geometry_names_its_organ() {
-    for text in [
-        "Sphere(NaN)",
-        "F(inf)",
-        "Translate(NaN,0,0) Sphere(1)",
-        "Box(1,inf,1)",
+    for (text, guilty) in [
+        ("Sphere(NaN)", "`Sphere(NaN)`"),
+        ("F(inf)", "`F("),
+        (
+            "M(1) Translate(NaN,0,0) F(1) Sphere(1)",
+            "`Translate(NaN,0,0)`",
+        ),
+        ("Box(1,inf,1)", "`Box(1,"),
     ] {
         let mut world = World::new(&["Leaf"]);
         let root = world.root();
         world.grow(root, text);
         let failure = world.refuse(Limits::default());
         assert_eq!(failure.slug, "not-finite", "{text}");
+        assert!(failure.message.starts_with(guilty), "{}", failure.message);
+        let places: Vec<_> = failure.primary.iter().chain(&failure.secondary).collect();
+        let spans: Vec<_> = places.iter().map(|label| label.span).collect();
+        assert_eq!(spans, MADE, "where such nodes are made");
     }
     let mut world = World::new(&["Leaf"]);
     world.define("Leaf", true, |w, out| make(w, out, "F(NaN)"));
@@ -650,11 +689,13 @@ fn impossible_geometry_names_its_organ() {
     world.grow(root, "Leaf");
     let failure = world.refuse(Limits::default());
     assert!(
-        failure.message.contains("`F` in the body of `Leaf`"),
+        failure.message.contains("`F(NaN)` in the body of `Leaf`"),
         "{}",
         failure.message
     );
-    assert!(failure.primary.is_some(), "the module's place");
+    let place = failure.primary.map(|label| label.span);
+    assert_eq!(place, Some(MADE[0]), "the one place in the body");
+    assert!(failure.secondary.is_empty());
 }
 
 #[test]
@@ -667,7 +708,7 @@ fn what_is_scaled_away_is_skipped() {
     );
     let drawn = world.draw();
     assert_eq!(shapes(&drawn).len(), 1);
-    assert_eq!(slugs(&drawn), ["flat-scale"]);
+    assert_eq!(slugs(&drawn), ["zero-scale", "zero-scale", "flat-scale"]);
     assert!(Scene::build(drawn.scene).is_ok());
 }
 
@@ -698,4 +739,5 @@ fn scene_errors_name_the_organ() {
         "{}",
         told.message
     );
+    assert_eq!(told.primary.map(|label| label.span), Some(MADE[0]));
 }

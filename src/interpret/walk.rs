@@ -10,7 +10,7 @@ use super::shapes::{is_finite, shape_of};
 use super::source::{Body, Source};
 use super::{Interpretation, Limits, Summary};
 use crate::color::Rgb;
-use crate::diag::{Diagnostics, Severity, Span};
+use crate::diag::Diagnostics;
 use crate::graph::{EdgeBits, NodeId, TypeId};
 use crate::light::{Environment, Sky};
 use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape, SceneDescription};
@@ -60,11 +60,11 @@ pub(super) struct Painter<'s, S: Source> {
     bodies: Vec<Option<Body>>,
     pub(super) materials: Materials,
     pub(super) sky: Rgb,
-    organs: Organs,
+    pub(super) organs: Organs,
     memory: u64,
-    warnings: Diagnostics,
+    pub(super) warnings: Diagnostics,
     /// Warnings given already, by slug and type.
-    warned: BTreeSet<(&'static str, TypeId)>,
+    pub(super) warned: BTreeSet<(&'static str, TypeId)>,
 }
 
 impl<'s, S: Source> Painter<'s, S> {
@@ -72,6 +72,8 @@ impl<'s, S: Source> Painter<'s, S> {
         let types = source.graph().types().clone();
         let bodies = types.iter().map(|(ty, _)| source.body(ty)).collect();
         let spans = types.iter().map(|(ty, _)| source.declared_at(ty)).collect();
+        let made = types.iter().map(|(ty, _)| source.made_at(ty).to_vec());
+        let made = made.collect();
         Self {
             source,
             limits,
@@ -86,7 +88,7 @@ impl<'s, S: Source> Painter<'s, S> {
             spare_ways: Vec::new(),
             bodies,
             materials: Materials::default(),
-            organs: Organs::new(types, spans),
+            organs: Organs::new(types, spans, made),
             memory: 0,
             sky: Rgb::BLACK,
             warnings: Diagnostics::default(),
@@ -265,10 +267,7 @@ impl<'s, S: Source> Painter<'s, S> {
         let mut to_group = state.transform;
         to_group.translation += to_group.matrix3.z_axis * shift;
         if !is_finite(&shape) || !to_group.is_finite() {
-            return Err(failure::not_finite(
-                &self.name(node, place),
-                self.span(node, place),
-            ));
+            return Err(self.not_finite(node, place));
         }
         if !self.has_extent(node, &to_group) {
             return Ok(());
@@ -306,10 +305,7 @@ impl<'s, S: Source> Painter<'s, S> {
         place: Place,
     ) -> Result<(), Failure> {
         if !to_group.is_finite() {
-            return Err(failure::not_finite(
-                &self.name(node, place),
-                self.span(node, place),
-            ));
+            return Err(self.not_finite(node, place));
         }
         if !self.has_extent(node, &to_group) {
             return Ok(());
@@ -335,7 +331,7 @@ impl<'s, S: Source> Painter<'s, S> {
         ))
     }
 
-    /// Whether a placement leaves anything to see. What is scaled to nothing is skipped, what is squeezed flat is told.
+    /// Whether a placement leaves anything to see. What does not is told.
     pub(super) fn has_extent(&mut self, node: NodeId, placement: &DAffine3) -> bool {
         let m = &placement.matrix3;
         let axes = [m.x_axis, m.y_axis, m.z_axis];
@@ -346,6 +342,8 @@ impl<'s, S: Source> Painter<'s, S> {
                 "flat-scale",
                 "is scaled to 0 along one axis; it is not drawn",
             );
+        } else if n_lost == 3 {
+            self.warn(node, "zero-scale", "is scaled to 0; it is not drawn");
         }
         n_lost == 0
     }
@@ -358,38 +356,6 @@ impl<'s, S: Source> Painter<'s, S> {
                 let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
                 self.organs.number(node, ty)
             }
-        }
-    }
-
-    /// A node in words: its type, and whose body made it.
-    pub(super) fn name(&self, node: NodeId, place: Place) -> String {
-        let graph = self.source.graph();
-        let own = match graph.type_of(node) {
-            Ok(ty) => format!("`{}`", graph.types()[ty].name),
-            Err(_) => "a deleted node".to_owned(),
-        };
-        match place.owner.and_then(|owner| self.organs.type_name(owner)) {
-            Some(owner) if place.depth > 0 => format!("{own} in the body of `{owner}`"),
-            _ => own,
-        }
-    }
-
-    /// Where the module of a node, or the one whose body made it, is declared.
-    pub(super) fn span(&self, node: NodeId, place: Place) -> Option<Span> {
-        let ty = self.source.graph().type_of(node).ok()?;
-        let own = self.source.declared_at(ty);
-        own.or_else(|| self.organs.declared_at(place.owner?))
-    }
-
-    /// Notes something about a node, once for each type.
-    pub(super) fn warn(&mut self, node: NodeId, slug: &'static str, what: &str) {
-        let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
-        if self.warned.insert((slug, ty)) {
-            let place = Place::default();
-            let message = format!("{} {what}", self.name(node, place));
-            let span = self.span(node, place);
-            self.warnings
-                .push(failure::diagnostic(Severity::Warning, slug, message, span));
         }
     }
 }
