@@ -54,4 +54,5 @@ pub mod image;
 pub mod animation;
 pub mod pipeline;
 pub mod watch;
+pub mod lsp;
 pub mod cli;

@@ -121,6 +121,7 @@ impl Checker<'_> {
 
     /// Reports a body with too many variables.
     pub(super) fn check_frame(&mut self) {
+        self.note_locals();
         if let Some(span) = self.cx.overflow.take() {
             let fault =
                 Diagnostic::error("too-large", span, "this body has more than 65535 variables");

@@ -92,6 +92,7 @@ impl Checker<'_> {
             overloads,
         } = groups.swap_remove(first);
         let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.note_callee(callee, name_span);
         self.apply(callee, receiver, args, true, span)
     }
 
@@ -238,6 +239,7 @@ impl Checker<'_> {
             return None;
         }
         let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.note_callee(callee, member.span);
         self.apply(callee, Some(object), args, !is_super, span)
     }
 
@@ -272,6 +274,7 @@ impl Checker<'_> {
             return None;
         }
         let (callee, args) = self.choose(name, span, &overloads, args)?;
+        self.note_callee(callee, member.span);
         self.apply(callee, None, args, true, span)
     }
 

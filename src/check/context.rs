@@ -97,6 +97,10 @@ pub(super) struct Context {
     pub(super) facts: Facts,
     /// Where a frame with too many variables began to overflow.
     pub(super) overflow: Option<Span>,
+    /// Where the slots were declared, without those that the body began with.
+    slot_spans: Vec<Span>,
+    /// All variables with a name, for editors.
+    pub(super) declared: Vec<Local>,
 }
 
 impl Context {
@@ -120,7 +124,15 @@ impl Context {
             return Slot(u16::MAX);
         };
         self.frame.push(ty);
+        self.slot_spans.push(span);
         Slot(number)
+    }
+
+    /// Where a slot was declared; `None` for `this`.
+    pub(super) fn slot_span(&self, slot: Slot) -> Option<Span> {
+        let n_first = self.frame.len() - self.slot_spans.len();
+        let at = usize::from(slot.0).checked_sub(n_first)?;
+        self.slot_spans.get(at).copied()
     }
 
     /// Opens a block.
@@ -146,6 +158,7 @@ impl Context {
         if !matches!(self.layers.last(), Some(Layer::Block(_))) {
             self.open();
         }
+        self.declared.push(local.clone());
         if let Some(Layer::Block(locals)) = self.layers.last_mut() {
             locals.push(local);
         }

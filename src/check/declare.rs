@@ -37,7 +37,9 @@ fn field_kind(ty: &ast::TypeRef) -> FieldKind {
 }
 
 /// Own fields of a module: parameters first, then the fields of its body.
-fn own_fields(module: &ast::Module) -> impl Iterator<Item = (&ast::TypeRef, &ast::Ident, bool)> {
+pub(super) fn own_fields(
+    module: &ast::Module,
+) -> impl Iterator<Item = (&ast::TypeRef, &ast::Ident, bool)> {
     let params = module.params.iter().filter_map(|param| match param {
         ast::ModuleParam::Field { ty, name, .. } => Some((ty, name, false)),
         ast::ModuleParam::Super(_) => None,

@@ -97,6 +97,7 @@ impl Checker<'_> {
             return self.node_member(object, name, member.span);
         }
         let object = self.value(object)?;
+        self.probe_member(member, &object.ty);
         match object.ty.clone() {
             Type::Node(_) => self.node_member(object, name, member.span),
             Type::Array(_) if name == "length" => {
@@ -139,7 +140,9 @@ impl Checker<'_> {
         let Type::Node(id) = object.ty else {
             return None;
         };
+        self.probe_object(name, Some(&object.ty));
         if let Some(field) = self.visible_field(id, name) {
+            self.note_field(id, field, name, span);
             return self.field_target(object, id, field).map(Indexed::Target);
         }
         if let Some(value) = self.derived_property(&object, id, name, span) {
@@ -166,6 +169,7 @@ impl Checker<'_> {
             && let Some(file) = self.file_named(owner)
             && let Some(id) = self.find_static(name, Some(file))
         {
+            self.note_static(id, member.span);
             found = Some(self.static_binding(id, span));
         }
         if found.is_none()
@@ -178,7 +182,10 @@ impl Checker<'_> {
                         .is_some_and(|o| self.types.is_a(module, o))
                 })
             });
-            found = own.map(|id| self.static_binding(id, span));
+            found = own.map(|id| {
+                self.note_static(id, member.span);
+                self.static_binding(id, span)
+            });
         }
         match found {
             Some(Binding::Target(target)) => Some(Indexed::Target(target)),

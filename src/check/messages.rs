@@ -58,6 +58,7 @@ impl Checker<'_> {
         {
             return;
         }
+        self.probe_member(member, ty);
         let name = member.name.as_str();
         let message = format!("`{}` has no method `{name}`", self.type_name(ty));
         let fault =
@@ -106,6 +107,7 @@ impl Checker<'_> {
 
     /// The fault of a call of something unknown; `None` if it was refused before.
     pub(super) fn unknown_function(&self, name: &str, span: Span) -> Option<Diagnostic> {
+        self.probe(name);
         if self.refused.contains(name) || self.cx.this.is_some_and(|this| self.is_orphan(this)) {
             return None;
         }

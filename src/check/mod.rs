@@ -34,13 +34,17 @@ mod rule;
 mod setter;
 mod statics;
 mod stmt;
+mod survey;
 mod switch;
 mod types;
 
 #[cfg(test)]
 mod tests;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+pub use survey::{LocalVariable, MARKER, Meaning, Probe, Survey};
 
 /// Names of the functions over several values (`sum`, `count`, …).
 pub use aggregate::NAMES as AGGREGATES;
@@ -76,6 +80,20 @@ pub fn check(files: &[SourceModel]) -> (Model, Diagnostics) {
     (model, found)
 }
 
+/// As [`check()`], and tells what the names mean. Also of models with errors.
+pub fn survey(files: &[SourceModel]) -> (Model, Diagnostics, Survey) {
+    let mut checker = Checker::new(files);
+    checker.survey = Some(RefCell::default());
+    checker.declare();
+    let model = checker.bodies();
+    let mut found = checker.diagnostics;
+    if !found.has_errors() {
+        found.append(lint::lint(&model));
+    }
+    let survey = checker.survey.map(RefCell::into_inner);
+    (model, found, survey.unwrap_or_default())
+}
+
 /// The state of a check: what is declared, and the body at hand.
 struct Checker<'a> {
     files: Vec<FileInfo<'a>>,
@@ -109,6 +127,8 @@ struct Checker<'a> {
     writes_elements: bool,
     cx: Context,
     diagnostics: Diagnostics,
+    /// What the names mean, if somebody wants to know.
+    survey: Option<RefCell<Survey>>,
 }
 
 impl<'a> Checker<'a> {
@@ -136,6 +156,7 @@ impl<'a> Checker<'a> {
             writes_elements: false,
             cx: Context::default(),
             diagnostics: Diagnostics::default(),
+            survey: None,
         }
     }
 

@@ -116,11 +116,15 @@ impl Checker<'_> {
 
     /// What `name` stands for, looked for from the inside out; `None` if nothing.
     pub(super) fn lookup(&mut self, name: &str, span: Span) -> Option<Binding> {
+        self.probe(name);
         for at in (0..self.cx.layers.len()).rev() {
             let found = match &self.cx.layers[at] {
                 Layer::Block(locals) => {
                     let local = locals.iter().rev().find(|local| local.name == name);
-                    local.map(|local| local_binding(local, span))
+                    local.map(|local| {
+                        self.note_local(local, span);
+                        local_binding(local, span)
+                    })
                 }
                 Layer::With(slot, ty) => {
                     let (slot, ty) = (*slot, ty.clone());
@@ -144,7 +148,10 @@ impl Checker<'_> {
             return Some(found);
         }
         self.find_static(name, None)
-            .map(|id| self.static_binding(id, span))
+            .map(|id| {
+                self.note_static(id, span);
+                self.static_binding(id, span)
+            })
             .or_else(|| self.library_constant("", name, span))
     }
 
@@ -158,6 +165,7 @@ impl Checker<'_> {
         match ty {
             Type::Node(id) => {
                 let field = self.visible_field(*id, name)?;
+                self.note_field(*id, field, name, span);
                 self.cx.touched.push(slot);
                 Some(
                     self.field_target(object, *id, field)
@@ -277,6 +285,7 @@ impl Checker<'_> {
 
     /// The fault of a name that stands where a module must.
     pub(super) fn unknown_node_type(&self, name: &str, span: Span) -> Diagnostic {
+        self.probe(name);
         if let Some(hint) = refuse::type_hint(name) {
             let message = format!("`{name}` is not supported");
             return Diagnostic::error("unsupported-type", span, message).hint(hint);

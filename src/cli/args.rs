@@ -32,6 +32,8 @@ pub enum Action {
     Watch(WatchArgs),
     /// Make the frames of a film: the camera moves
     Fly(FlyArgs),
+    /// Serve an editor (Language Server Protocol on standard input and output)
+    Lsp(LspArgs),
 }
 
 /// The model.
@@ -177,6 +179,19 @@ pub struct FlyArgs {
     pub manners: Manners,
 }
 
+/// `lsp`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example, in Neovim:\n  vim.lsp.start({ name = 'understory', cmd = { 'understory', 'lsp' } })\n\n\
+                        Shows errors as you type, what words mean, where they are declared, and what could stand there.\n\
+                        `grammar/vscode` is an extension for Visual Studio Code."
+)]
+pub struct LspArgs {
+    /// Talk over standard input and output, as always: editors add this flag
+    #[arg(long)]
+    pub stdio: bool,
+}
+
 #[derive(Debug, Parser)]
 #[command(
     name = "understory",
@@ -201,12 +216,13 @@ const STYLES: Styles = Styles::styled()
     .placeholder(AnsiColor::Cyan.on_default());
 
 /// The commands with their names.
-const COMMANDS: [(&str, Command); 5] = [
+const COMMANDS: [(&str, Command); 6] = [
     ("check", Command::Check),
     ("derive", Command::Derive),
     ("render", Command::Render),
     ("watch", Command::Watch),
     ("fly", Command::Fly),
+    ("lsp", Command::Lsp),
 ];
 
 impl Request {
@@ -244,6 +260,7 @@ impl Action {
             Self::Render(_) => Command::Render,
             Self::Watch(_) => Command::Watch,
             Self::Fly(_) => Command::Fly,
+            Self::Lsp(_) => Command::Lsp,
         }
     }
 }

@@ -4,6 +4,7 @@ pub mod args;
 mod commands;
 pub mod outcome;
 mod shell;
+mod talking;
 pub mod terminal;
 mod watching;
 
@@ -31,11 +32,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
             };
         }
     };
+    if let Action::Lsp(_) = request.action {
+        return talking::talk().into();
+    }
     let cancel = CancelToken::default();
     let (sender, events) = channel();
     listen_for_ctrl_c(cancel.clone(), sender.clone());
     let manners = match &request.action {
-        Action::Check(_) => None,
+        Action::Check(_) | Action::Lsp(_) => None,
         Action::Derive(args) => Some(&args.manners),
         Action::Render(args) => Some(&args.manners),
         Action::Watch(args) => Some(&args.manners),
@@ -48,6 +52,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Render(args) => commands::render(&shell, args),
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
         Action::Fly(args) => commands::fly(&shell, args),
+        Action::Lsp(_) => Ok(()),
     };
     shell.conclude(result).into()
 }

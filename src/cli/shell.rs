@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Stack of each thread: deep recursion in a model ends by the language's own limit, long before this.
-const STACK: usize = 64 << 20;
+pub(super) const STACK: usize = 64 << 20;
 
 /// What all commands share.
 pub(super) struct Shell {
@@ -39,7 +39,9 @@ impl Shell {
         };
         let output = match request.action.command() {
             Command::Derive => ModelOutput::Standard,
-            Command::Check | Command::Render | Command::Watch | Command::Fly => ModelOutput::Error,
+            Command::Check | Command::Render | Command::Watch | Command::Fly | Command::Lsp => {
+                ModelOutput::Error
+            }
         };
         let terminal = Arc::new(Terminal::new(manner, output, cancel.clone()));
         Self {

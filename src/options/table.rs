@@ -21,6 +21,8 @@ pub enum Command {
     Watch,
     /// Makes the frames of a film.
     Fly,
+    /// Serves an editor.
+    Lsp,
 }
 
 use Command::{Derive, Fly, Render, Watch};
