@@ -555,3 +555,11 @@ fn files_in_folders_are_imported_and_missing_ones_named() {
     let message = bench.fail("check m.rgg", 1);
     assert!(message.contains("`Tool.java` is not read"), "{message}");
 }
+
+#[test]
+fn texts_are_made_of_up_to_eight_values() {
+    let bench = Bench::new(
+        "protected void init() { println(String.format(\"%d%d%d%d%d%d%d%d\", 1, 2, 3, 4, 5, 6, 7, 8)); }\n",
+    );
+    assert!(bench.succeed("derive m.rgg").starts_with("12345678\n"));
+}

@@ -727,6 +727,30 @@ fn too_much_geometry_is_refused() {
 }
 
 #[test]
+fn lamps_of_instances_in_instances_are_counted() {
+    let mut world = World::new(&["Tree"]);
+    let root = world.root();
+    let mut tree = world.grow(root, "[ Tree");
+    let bulb = world.grow(tree, "[ M(4) LightNode");
+    world.set(bulb, "light", lamp(LampKind::Point, 1.0));
+    // Two of the tree before in each tree: 2^12 lamps.
+    for _ in 0..12 {
+        let next = world.grow(root, "[ Tree");
+        for _ in 0..2 {
+            let node = world.grow(next, "[ Instance");
+            world.set(node, "prototype", Object::Node(tree));
+        }
+        tree = next;
+    }
+    let limits = Limits {
+        memory: 100_000,
+        ..Limits::default()
+    };
+    assert_eq!(world.refuse(limits).slug, "geometry-limit");
+    assert!(world.draw().scene.lights.len() > 4096);
+}
+
+#[test]
 fn scene_errors_name_the_organ() {
     let mut world = World::new(&[]);
     let root = world.root();

@@ -12,7 +12,7 @@ use super::{Interpretation, Limits, Summary};
 use crate::color::Rgb;
 use crate::diag::Diagnostics;
 use crate::graph::{EdgeBits, NodeId, TypeId};
-use crate::light::{Environment, Sky};
+use crate::light::{Environment, Light, Sky};
 use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape, SceneDescription};
 use crate::turtle::effect::{Effect, Primitive};
 use crate::turtle::pose::{apply_own_transform, follow};
@@ -311,7 +311,13 @@ impl<'s, S: Source> Painter<'s, S> {
             return Ok(());
         }
         let organ = self.organ(node, place);
-        self.charge(size_of::<Instance>(), node, place)?;
+        // Shapes of an instance cost nothing, but its lamps are placed one by one.
+        let n_lamps = self
+            .about
+            .get(group.0 as usize)
+            .map_or(0, |about| about.lights.len());
+        let bytes = size_of::<Instance>() + n_lamps * size_of::<Light>();
+        self.charge(bytes, node, place)?;
         if let Some(about) = self.about.get(group.0 as usize) {
             self.canvas.push_instance(group, about, to_group, organ);
         }

@@ -129,6 +129,10 @@ signatures! {
     StringFormat2 = "String"."format"(String, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
     StringFormat3 = "String"."format"(String, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
     StringFormat4 = "String"."format"(String, Object, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormat5 = "String"."format"(String, Object, Object, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormat6 = "String"."format"(String, Object, Object, Object, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormat7 = "String"."format"(String, Object, Object, Object, Object, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormat8 = "String"."format"(String, Object, Object, Object, Object, Object, Object, Object, Object) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
     CurrentTimeMillis = "System"."currentTimeMillis"() -> Long, Writes, "ms", "Time since 1970.";
     NanoTime = "System"."nanoTime"() -> Long, Writes, "ns", "Time since some moment.";
     SystemOutPrintln = "System.out"."println"() -> Void, Prints, "", "Ends the line.";

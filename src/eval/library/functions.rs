@@ -108,9 +108,14 @@ pub fn function(id: F) -> Behaviour {
         | F::BooleanToString
         | F::CharacterToString
         | F::StringValueOf => Native(strings::value_of),
-        F::StringFormat1 | F::StringFormat2 | F::StringFormat3 | F::StringFormat4 => {
-            Native(format::format)
-        }
+        F::StringFormat1
+        | F::StringFormat2
+        | F::StringFormat3
+        | F::StringFormat4
+        | F::StringFormat5
+        | F::StringFormat6
+        | F::StringFormat7
+        | F::StringFormat8 => Native(format::format),
         F::CurrentTimeMillis | F::NanoTime => Native(system::time),
     }
 }
