@@ -76,6 +76,8 @@ pub struct Machine {
     pub derivation_mode: i32,
     /// Number of the step that runs, from 1; 0 is `init`.
     pub step: u64,
+    /// Whether rules that are templates are applied in bulk; the result is the same.
+    pub uses_templates: bool,
     /// A step that could not be applied. The model goes on without it and fails when the entry method ends.
     failed_step: Option<Trap>,
     limits: Limits,
@@ -139,6 +141,7 @@ impl Machine {
             meter: Meter::new(setup.limits.memory),
             derivation_mode: DEFAULT_MODE,
             step: 0,
+            uses_templates: true,
             failed_step: None,
             limits: setup.limits,
             output: setup.output,
@@ -276,6 +279,13 @@ impl Machine {
             "does a loop append to a text without end?",
             None,
         ))
+    }
+
+    /// Queues one by one the matches that were noted in bulk, before anything that is no template is made or queued.
+    pub fn settle(&mut self, span: Span) -> Result<(), Trap> {
+        self.queue
+            .settle(&mut self.graph)
+            .map_err(|error| Trap::from(error).at(span))
     }
 
     /// Applies what the rules have queued, for the call of `derive()` at `span`.

@@ -1,5 +1,9 @@
 //! Memory of a graph: words and objects of nodes, recycled block by block.
 
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelIterator, ParallelExtend, ParallelIterator,
+};
+
 /// No place in an arena.
 pub(super) const NIL: u32 = u32::MAX;
 
@@ -29,6 +33,18 @@ impl WordArena {
         at
     }
 
+    /// Writes `n` new blocks of `length` words each, in parallel, and returns where the first begins.
+    pub(super) fn append(
+        &mut self,
+        n: usize,
+        length: usize,
+        word: impl Fn(usize, usize) -> u32 + Sync,
+    ) -> u32 {
+        let at = self.words.len() as u32;
+        extend(&mut self.words, n, length, word);
+        at
+    }
+
     pub(super) fn release(&mut self, at: u32, length: usize) {
         if length == 0 {
             return;
@@ -53,6 +69,22 @@ impl WordArena {
         self.words.len()
     }
 }
+
+/// Appends `n` groups of `length` items each, in parallel; `item` makes them by number of the group and place in it.
+pub(super) fn extend<T: Send>(
+    items: &mut Vec<T>,
+    n: usize,
+    length: usize,
+    item: impl Fn(usize, usize) -> T + Sync,
+) {
+    if length > 0 {
+        let all = (0..n * length).into_par_iter().with_min_len(MIN_SHARE);
+        items.par_extend(all.map(|i| item(i / length, i % length)));
+    }
+}
+
+/// Items that one thread writes at least; fewer are not worth the handing over.
+const MIN_SHARE: usize = 1 << 13;
 
 /// Objects that words refer to by number; 0 is null and never stored.
 #[derive(Clone, Debug, Default)]

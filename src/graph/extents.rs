@@ -3,7 +3,7 @@
 //! That is GroIMP's order (golden model 29): the nodes of the newest step come before older ones. A step inserts its nodes
 //! in reverse, so that among themselves they stand in the order of the rules and their right-hand sides.
 
-use super::arena::NIL;
+use super::arena::{NIL, extend};
 use super::store::{Graph, Header};
 use super::{NodeId, Payload, TypeId};
 use std::cmp::Reverse;
@@ -14,6 +14,20 @@ struct Extent {
     /// Node places in order of insertion; [`NIL`] where one was removed.
     places: Vec<u32>,
     n_removed: usize,
+}
+
+impl Extent {
+    /// Closes the gaps if they are more than half.
+    fn close_gaps(&mut self, nodes: &mut [Header]) {
+        if self.n_removed * 2 <= self.places.len() {
+            return;
+        }
+        self.places.retain(|&index| index != NIL);
+        self.n_removed = 0;
+        for (place, &index) in self.places.iter().enumerate() {
+            nodes[index as usize].extent_place = place as u32;
+        }
+    }
 }
 
 /// The extents of all types.
@@ -38,17 +52,38 @@ impl Extents {
 
     /// Removes the node at a place; closes the gaps when they are more than half.
     pub(super) fn remove(&mut self, ty: TypeId, place: u32, nodes: &mut [Header]) {
+        self.vacate(ty, place);
+        self.by_type[usize::from(ty.0)].close_gaps(nodes);
+    }
+
+    /// Leaves a gap at a place, for [`Extents::close_gaps`].
+    pub(super) fn vacate(&mut self, ty: TypeId, place: u32) {
         let extent = &mut self.by_type[usize::from(ty.0)];
         extent.places[place as usize] = NIL;
         extent.n_removed += 1;
-        if extent.n_removed * 2 <= extent.places.len() {
-            return;
+    }
+
+    /// Closes the gaps of all extents where they are more than half.
+    pub(super) fn close_gaps(&mut self, nodes: &mut [Header]) {
+        for extent in &mut self.by_type {
+            extent.close_gaps(nodes);
         }
-        extent.places.retain(|&index| index != NIL);
-        extent.n_removed = 0;
-        for (place, &index) in extent.places.iter().enumerate() {
-            nodes[index as usize].extent_place = place as u32;
-        }
+    }
+
+    /// Adds `n` times `length` nodes at the end, in parallel; `node` tells their places by number and place in the group.
+    pub(super) fn append(
+        &mut self,
+        ty: TypeId,
+        n: usize,
+        length: usize,
+        node: impl Fn(usize, usize) -> u32 + Sync,
+    ) {
+        extend(&mut self.by_type[usize::from(ty.0)].places, n, length, node);
+    }
+
+    /// Number of places in the extent of a type, gaps included.
+    pub(super) fn n_places_of(&self, ty: TypeId) -> usize {
+        self.by_type[usize::from(ty.0)].places.len()
     }
 
     fn exactly(&self, ty: TypeId) -> impl Iterator<Item = usize> {

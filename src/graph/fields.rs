@@ -98,31 +98,12 @@ impl<O: Payload> Graph<O> {
 
     /// Sets an integer field.
     pub fn set_i32(&mut self, node: NodeId, field: FieldId, value: i32) -> Result<(), GraphError> {
-        self.set_number(node, field, |kind| match kind {
-            FieldKind::Long => split(i64::from(value) as u64),
-            FieldKind::Float => [(value as f32).to_bits(), 0],
-            FieldKind::Double => split(f64::from(value).to_bits()),
-            FieldKind::Boolean => [u32::from(value != 0), 0],
-            FieldKind::Byte => [i32::from(value as i8) as u32, 0],
-            FieldKind::Short => [i32::from(value as i16) as u32, 0],
-            FieldKind::Char => [u32::from(value as u16), 0],
-            FieldKind::Int | FieldKind::Object => [value as u32, 0],
-        })
+        self.set_number(node, field, |kind| kind.encode_i32(value))
     }
 
     /// Sets a `long` field.
     pub fn set_i64(&mut self, node: NodeId, field: FieldId, value: i64) -> Result<(), GraphError> {
-        self.set_number(node, field, |kind| match kind {
-            FieldKind::Long => split(value as u64),
-            FieldKind::Float => [(value as f32).to_bits(), 0],
-            FieldKind::Double => split((value as f64).to_bits()),
-            FieldKind::Boolean
-            | FieldKind::Byte
-            | FieldKind::Short
-            | FieldKind::Char
-            | FieldKind::Int
-            | FieldKind::Object => [value as u32, 0],
-        })
+        self.set_number(node, field, |kind| kind.encode_i64(value))
     }
 
     /// Sets a `float` field.
@@ -228,10 +209,6 @@ impl<O: Payload> Graph<O> {
 
 fn wide(words: [u32; 2]) -> u64 {
     u64::from(words[0]) | u64::from(words[1]) << 32
-}
-
-fn split(bits: u64) -> [u32; 2] {
-    [bits as u32, (bits >> 32) as u32]
 }
 
 #[cfg(test)]

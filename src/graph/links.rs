@@ -17,7 +17,7 @@ const ODD: u16 = 1024;
 /// Where the kinds of the edge in the header stand in its flags: successor, branch, refinement.
 const BITS_SHIFT: u32 = 11;
 /// All flags that describe the edge in the header.
-pub(super) const LINK_FLAGS: u16 = ODD | 7 << BITS_SHIFT;
+const LINK_FLAGS: u16 = ODD | 7 << BITS_SHIFT;
 
 /// Where an edge comes from, and its place in the list of edges that come from there. In that list `next_out` of the last
 /// edge is [`NIL`] and `previous_out` of the first is the last.
@@ -44,6 +44,11 @@ pub(super) fn link_flags(bits: EdgeBits) -> Option<u16> {
         .union(EdgeBits::REFINEMENT);
     let is_plain = bits.without(plain) == EdgeBits::NONE;
     is_plain.then(|| (bits.number() >> PLAIN_SHIFT << BITS_SHIFT) as u16)
+}
+
+/// The kinds that such flags say.
+pub(super) fn flags_bits(flags: u16) -> EdgeBits {
+    EdgeBits::from_number(u32::from(flags >> BITS_SHIFT & 7) << PLAIN_SHIFT)
 }
 
 /// The three plain kinds are the bits of [`EdgeBits`] from here on.
@@ -139,7 +144,7 @@ impl Links {
         if flags & ODD != 0 {
             return self.odd.get(&at).copied().unwrap_or(EdgeBits::NONE);
         }
-        EdgeBits::from_number(u32::from(flags >> BITS_SHIFT & 7) << PLAIN_SHIFT)
+        flags_bits(flags)
     }
 
     pub(super) fn set_bits(&mut self, nodes: &mut [Header], at: u32, bits: EdgeBits) {
@@ -210,20 +215,7 @@ impl Links {
             self.add_extra(nodes, target)
         };
         self.set_bits(nodes, at, bits);
-        let first = nodes[source as usize].first_out;
-        let mut link = Link {
-            from: source,
-            next_out: NIL,
-            previous_out: at,
-        };
-        if first == NIL {
-            nodes[source as usize].first_out = at;
-        } else {
-            let last = std::mem::replace(&mut self.link_mut(nodes, first).previous_out, at);
-            self.link_mut(nodes, last).next_out = at;
-            link.previous_out = last;
-        }
-        *self.link_mut(nodes, at) = link;
+        self.enter_out_list(nodes, source, at);
         self.n_edges += 1;
     }
 
@@ -274,7 +266,53 @@ impl Links {
         }
     }
 
-    fn leave_out_list(&mut self, nodes: &mut [Header], at: u32) {
+    /// Makes `at` the last edge that comes from `source`.
+    pub(super) fn enter_out_list(&mut self, nodes: &mut [Header], source: u32, at: u32) {
+        let first = nodes[source as usize].first_out;
+        let mut link = Link {
+            from: source,
+            next_out: NIL,
+            previous_out: at,
+        };
+        if first == NIL {
+            nodes[source as usize].first_out = at;
+        } else {
+            let last = std::mem::replace(&mut self.link_mut(nodes, first).previous_out, at);
+            self.link_mut(nodes, last).next_out = at;
+            link.previous_out = last;
+        }
+        *self.link_mut(nodes, at) = link;
+    }
+
+    /// Makes the edge in the header of `at`, which is in no list, the first one that comes from `source`, where all edges
+    /// are in headers.
+    pub(super) fn prepend(nodes: &mut [Header], source: u32, at: u32) {
+        let first = std::mem::replace(&mut nodes[source as usize].first_out, at);
+        let previous_out = if first == NIL {
+            at
+        } else {
+            std::mem::replace(&mut nodes[first as usize].link.previous_out, at)
+        };
+        nodes[at as usize].link = Link {
+            from: source,
+            next_out: first,
+            previous_out,
+        };
+    }
+
+    /// Gives the edge in the header of `to` the kinds of that of `from`, whose own kinds mean nothing afterwards.
+    pub(super) fn move_bits(&mut self, nodes: &mut [Header], from: u32, to: u32) {
+        let kinds = nodes[from as usize].flags & LINK_FLAGS;
+        let flags = &mut nodes[to as usize].flags;
+        *flags = *flags & !LINK_FLAGS | kinds;
+        if kinds & ODD != 0
+            && let Some(bits) = self.odd.remove(&from)
+        {
+            self.odd.insert(to, bits);
+        }
+    }
+
+    pub(super) fn leave_out_list(&mut self, nodes: &mut [Header], at: u32) {
         let Link {
             from,
             next_out,

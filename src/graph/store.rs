@@ -31,7 +31,7 @@ pub(super) struct Header {
     pub(super) flags: u16,
     pub(super) generation: u32,
     /// Start of the node's words.
-    words: u32,
+    pub(super) words: u32,
     /// First outgoing edge, or [`NIL`].
     pub(super) first_out: u32,
     /// First incoming edge.
@@ -72,9 +72,9 @@ pub(super) enum SideValue<O> {
 /// An F with three parameters and one edge takes 48 bytes: header with the edge 32, extent 4, words 12.
 #[derive(Clone, Debug)]
 pub struct Graph<O> {
-    types: Arc<TypeTable>,
+    pub(super) types: Arc<TypeTable>,
     pub(super) nodes: Vec<Header>,
-    free_nodes: Vec<u32>,
+    pub(super) free_nodes: Vec<u32>,
     pub(super) words: WordArena,
     pub(super) objects: ObjectArena<O>,
     /// Rare attributes by node and field. Never iterated.
@@ -252,7 +252,7 @@ impl<O: Payload> Graph<O> {
             .is_ok_and(|i| self.nodes[i].flags & QUEUED != 0)
     }
 
-    fn release_fields(&mut self, index: usize) {
+    pub(super) fn release_fields(&mut self, index: usize) {
         let Header {
             type_id,
             flags,
@@ -348,12 +348,12 @@ impl<O: Payload> Graph<O> {
 }
 
 /// Nodes are numbered with 31 bits, see [`Links`].
-const MOST_NODES: usize = (1 << 31) - 2;
+pub(super) const MOST_NODES: usize = (1 << 31) - 2;
 /// Words are numbered with 32 bits; a little room is left for the last node.
-const MOST_WORDS: usize = u32::MAX as usize - (1 << 16);
+pub(super) const MOST_WORDS: usize = u32::MAX as usize - (1 << 16);
 
 impl Header {
-    const VACANT: Self = Self {
+    pub(super) const VACANT: Self = Self {
         type_id: TypeId(0),
         flags: 0,
         generation: 0,

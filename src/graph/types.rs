@@ -42,6 +42,31 @@ impl FieldKind {
         }
     }
 
+    /// The words of an integer (or boolean) in this kind.
+    pub(crate) fn encode_i32(self, value: i32) -> [u32; 2] {
+        match self {
+            Self::Long | Self::Float | Self::Double => self.encode_i64(i64::from(value)),
+            Self::Boolean => [u32::from(value != 0), 0],
+            Self::Byte => [i32::from(value as i8) as u32, 0],
+            Self::Short => [i32::from(value as i16) as u32, 0],
+            Self::Char => [u32::from(value as u16), 0],
+            Self::Int | Self::Object => [value as u32, 0],
+        }
+    }
+
+    /// The words of a long integer in this kind.
+    pub(crate) fn encode_i64(self, value: i64) -> [u32; 2] {
+        let wide = |bits: u64| [bits as u32, (bits >> 32) as u32];
+        match self {
+            Self::Long => wide(value as u64),
+            Self::Float => [(value as f32).to_bits(), 0],
+            Self::Double => wide((value as f64).to_bits()),
+            Self::Boolean | Self::Byte | Self::Short | Self::Char | Self::Int | Self::Object => {
+                [value as u32, 0]
+            }
+        }
+    }
+
     /// The words of `value` in this kind. Objects are null whatever the value.
     pub(crate) fn encode(self, value: f64) -> [u32; 2] {
         let wide = |bits: u64| [bits as u32, (bits >> 32) as u32];

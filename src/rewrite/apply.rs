@@ -72,6 +72,9 @@ impl<O: Payload> Queue<O> {
     }
 
     fn apply_all(&mut self, graph: &mut Graph<O>) -> Result<(), RewriteError> {
+        if self.apply_batches(graph)? {
+            return Ok(());
+        }
         for node in self.born.drain(..).rev() {
             graph.insert(node)?;
         }

@@ -9,6 +9,7 @@
 //! `println`, of random numbers, of queries in the next step.
 
 mod apply;
+mod batches;
 mod deferred;
 mod path;
 mod plan;

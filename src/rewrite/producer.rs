@@ -277,6 +277,26 @@ impl<O: Payload> Queue<O> {
         self.give_back(frame);
     }
 
+    /// Queues the replacement of one node by a tree of new ones, joined by `edges` in the order of the nodes they lead to;
+    /// `ends` are the first node and the last one outside brackets.
+    pub(super) fn replace_node(
+        &mut self,
+        graph: &mut Graph<O>,
+        arrow: Arrow,
+        node: NodeId,
+        (first, last): (NodeId, NodeId),
+        edges: impl Iterator<Item = EdgeRequest>,
+    ) {
+        let frame = self.push_frame(Some(arrow));
+        frame.matched.push(node);
+        frame.is_kept.push(false);
+        frame.ends = (Some(node), Some(node));
+        (frame.first, frame.last) = (Some(first), Some(last));
+        frame.heads.push((first, false));
+        frame.edges.extend(edges);
+        self.end(graph);
+    }
+
     /// Gives up a right-hand side that failed half-way; nothing of it is queued.
     pub fn abort(&mut self) {
         if let Some(frame) = self.take_frame() {

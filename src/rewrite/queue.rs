@@ -3,7 +3,7 @@
 use super::deferred::Assignment;
 use super::producer::Frame;
 use super::search::Flow;
-use crate::graph::{EdgeBits, Graph, GraphError, NodeId, Payload};
+use crate::graph::{Batch, EdgeBits, Graph, GraphError, NodeId, Payload};
 
 /// What can go wrong when a step is applied; each is the model's fault.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -93,6 +93,11 @@ pub struct Queue<O> {
     /// Where the operations of the one match of a sequential step begin, and how many matches were offered so far.
     chosen: Option<(Mark, i32)>,
     pub(super) buffers: super::apply::Buffers,
+    /// Matches noted in bulk; all came before anything else that is queued.
+    pub(super) batches: Vec<Batch>,
+    /// New nodes and words that they will need.
+    pub(super) n_noted_nodes: usize,
+    pub(super) n_noted_words: usize,
 }
 
 impl<O> Default for Queue<O> {
@@ -110,6 +115,9 @@ impl<O> Default for Queue<O> {
             depth: 0,
             chosen: None,
             buffers: super::apply::Buffers::default(),
+            batches: vec![],
+            n_noted_nodes: 0,
+            n_noted_words: 0,
         }
     }
 }
@@ -121,6 +129,11 @@ struct Mark([usize; 7]);
 impl<O: Payload> Queue<O> {
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
+        self.has_no_operations() && self.batches.is_empty()
+    }
+
+    /// Whether nothing is queued but matches noted in bulk.
+    pub(super) fn has_no_operations(&self) -> bool {
         self.mark().0 == [0; 7] && self.assignments.is_empty()
     }
 
@@ -161,6 +174,11 @@ impl<O: Payload> Queue<O> {
 
     /// Forgets all that is queued; right-hand sides under way go on.
     pub(super) fn clear_operations(&mut self, graph: &mut Graph<O>) {
+        for batch in self.take_batches() {
+            for &node in &batch.matched {
+                graph.forget_consumed(node);
+            }
+        }
         self.reset_to(Mark([0; 7]), graph);
         self.assignments.clear();
         self.chosen = None;

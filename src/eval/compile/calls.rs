@@ -121,6 +121,7 @@ impl Scope<'_> {
     pub(super) fn new_node(&self, new: &NewNode, span: Span) -> Code {
         let (ty, fill) = (new.type_id, self.fill_node(new, span));
         Code::Node(Source::code(move |p, m| {
+            m.settle(span)?;
             let node = m
                 .graph
                 .create(ty)

@@ -12,6 +12,7 @@ mod library;
 mod loops;
 mod operators;
 mod places;
+mod plain;
 mod productions;
 mod rules;
 mod sequences;

@@ -132,12 +132,16 @@ impl Scope<'_> {
     pub(super) fn rule(&self, rule: &Rule) -> Exec {
         let compiled = self.pattern(&rule.pattern);
         let (arrow, span) = (rule.arrow, rule.span);
+        let plain = self.plain_rule(rule);
         let body = match &rule.exec {
             Some(statement) => self.statement(statement),
             None => self.productions(&rule.rhs),
         };
         Box::new(move |program, machine| {
             let mode = machine.mode();
+            let plain = plain
+                .as_ref()
+                .filter(|plain| mode == rewrite::Mode::default() && plain.is_usable(machine));
             let mut left_by = Flow::Next;
             let mut env = Env {
                 program,
@@ -151,6 +155,18 @@ impl Scope<'_> {
                 &mut env,
                 &mut |env, nodes| {
                     env.machine.tick(span)?;
+                    if let Some(plain) = plain
+                        && plain
+                            .note(program, env.machine, nodes)
+                            .map_err(|trap| note_match(trap, env.machine, nodes, span))?
+                    {
+                        return Ok(rewrite::Flow::Continue);
+                    }
+                    // What `::>` runs queues nothing itself.
+                    if arrow != Arrow::Execution || mode.derivation != rewrite::Derivation::Parallel
+                    {
+                        env.machine.settle(span)?;
+                    }
                     if !env.admit(mode) {
                         return Ok(mode.after_match());
                     }
