@@ -165,8 +165,12 @@ const EXPRESSIONS: &[(&str, &str)] = &[
 
 /// What a model whose `init` has this body prints.
 fn printed(body: &str) -> Result<String, String> {
-    let text = format!("protected void init() {{\n{body}\n}}");
-    let (ast, read) = parse(FileId(0), &text);
+    printed_by(&format!("protected void init() {{\n{body}\n}}"))
+}
+
+/// What a model prints at its start.
+fn printed_by(text: &str) -> Result<String, String> {
+    let (ast, read) = parse(FileId(0), text);
     let (model, checked) = check(&[SourceModel {
         name: "model.rgg".into(),
         ast,
@@ -195,4 +199,60 @@ fn expressions_print_what_java_prints() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Classes, interfaces, constructors, exceptions of the model's own; what JDK 17 prints for the same classes.
+const CLASSES: &str = r#"
+class Point2 {
+	double x = 1; double y;
+	static int made;
+	Point2() { made++; }
+	Point2(double x, double y) { this(); this.x = x; this.y = y; }
+	double norm() { return Math.sqrt(x*x + y*y); }
+	String toString() { return "(" + x + "," + y + ")"; }
+}
+class Point3 extends Point2 {
+	double z = 2;
+	int[] a = {1,2,3};
+	char c = 'q';
+	Leaf leaf;
+	Point3 next;
+	Point3(double z) { super(3, 4); this.z += z; a[0]++; }
+	double norm() { return super.norm() + z; }
+}
+class Oops extends Exception { int code; Oops(String m, int code) { super(m); this.code = code; } }
+interface Grows { double grow(double by); }
+class Twig implements Grows { double l; double grow(double by) { l += by; return l; } }
+module Leaf(double size) extends F(size) implements Grows {
+	double grow(double by) { size += 2 * by; return size; }
+}
+module Stem(int n) { float w; Stem(float w, int k) { this.w = w; n = k; } }
+static double f(Grows g) { return g.grow(1); }
+protected void init() {
+	Point2 p = new Point2();
+	println(p.norm() + " " + p.x);
+	Point2 q = new Point3(5);
+	println(q.norm() + " " + q.x + " " + Point2.made + " " + ((Point3) q).z + ((Point3) q).c + ((Point3) q).a[0]);
+	Point3 r = (Point3) q;
+	r.next = new Point3(1);
+	r.next.x *= 2; r.next.x++;
+	println(r.next.x + " " + (r.next == null) + " " + (r.next.next == null) + (q instanceof Point3) + (p instanceof Point3));
+	r.leaf = new Leaf(0.5);
+	println(r.leaf.size);
+	try { throw new Oops("bad", 7); } catch (ArithmeticException e) { println("no"); } catch (Oops e) { println(e.getMessage() + e.code); }
+	try { int z = 0; z = 1 / z; } catch (NullPointerException | ArithmeticException e) { println(e.getMessage()); }
+	println(f(new Twig()) + " " + f(r.leaf));
+	Stem s = new Stem(2.5, 9);
+	println(s.w + " " + s.n + " " + new Stem(3).n);
+	println("p = " + p + " " + q);
+	p = null;
+	println("null: " + p);
+}
+"#;
+
+#[test]
+fn classes_work_as_in_java() {
+    let expected = "1.0 1.0\n12.0 3.0 2 7.0q2\n7.0 false truetruefalse\n0.5\nbad7\n/ by zero\n1.0 2.5\n2.5 9 3\n\
+                    p = (1.0,0.0) (3.0,4.0)\nnull: null\n";
+    assert_eq!(printed_by(CLASSES).unwrap(), expected);
 }

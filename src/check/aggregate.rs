@@ -6,7 +6,7 @@
 
 use super::Checker;
 use super::context::Collector;
-use super::model::{Aggregate, Expr, ExprKind, Place, Sequence, Slot, Type};
+use super::model::{Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Type};
 use super::names::Target;
 use super::types::{is_numeric, promote};
 use crate::diag::{Diagnostic, Span};
@@ -29,6 +29,7 @@ pub const NAMES: &[&str] = &[
     "selectRandomly",
     "array",
     "string",
+    "selectWhere",
     "selectWhereMin",
     "selectWhereMax",
 ];
@@ -62,8 +63,14 @@ impl Checker<'_> {
         span: Span,
     ) -> Option<Option<Expr>> {
         match (name, args) {
-            ("selectWhereMin" | "selectWhereMax", [sequence, key]) => {
-                Some(self.select_where(name == "selectWhereMin", sequence, key, span))
+            ("selectWhere", [sequence, key]) => {
+                Some(self.select_where(Selection::First, sequence, key, span))
+            }
+            ("selectWhereMin", [sequence, key]) => {
+                Some(self.select_where(Selection::Least, sequence, key, span))
+            }
+            ("selectWhereMax", [sequence, key]) => {
+                Some(self.select_where(Selection::Greatest, sequence, key, span))
             }
             (_, [sequence]) => {
                 let aggregate = aggregate_named(name)?;
@@ -162,7 +169,7 @@ impl Checker<'_> {
 
     fn select_where(
         &mut self,
-        is_min: bool,
+        selection: Selection,
         sequence: &ast::Expr,
         key: &ast::Expr,
         span: Span,
@@ -172,8 +179,10 @@ impl Checker<'_> {
         let key = self.value(key);
         self.cx.close();
         let ((sequence, ty), key) = (sequence?, key?);
-        let key = self.unbox(key);
-        if !is_numeric(&key.ty) {
+        let mut key = self.unbox(key);
+        if selection == Selection::First {
+            key = self.boolean(key)?;
+        } else if !is_numeric(&key.ty) {
             let message = format!(
                 "what is least or greatest must be a number, found `{}`",
                 self.type_name(&key.ty)
@@ -184,7 +193,7 @@ impl Checker<'_> {
         // Labels of the query are set while the key is evaluated; the element has a slot of its own.
         let slot = self.cx.slot(ty.clone(), span);
         let kind = ExprKind::SelectWhere {
-            is_min,
+            selection,
             sequence: Box::new(sequence),
             slot,
             key: Box::new(key),

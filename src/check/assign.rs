@@ -193,11 +193,13 @@ impl Checker<'_> {
     ) -> Option<Expr> {
         let (target_span, target, value) = (target.span, self.writable(target), self.value(value));
         let (target, value) = (target?, value?);
+        let is_of_node =
+            |place: &Place| matches!(place, Place::Field(e, _) if matches!(e.ty, Type::Node(_)));
         let Target {
             place: Place::Field(node, field),
             ty,
             ..
-        } = target
+        } = Some(target).filter(|target| is_of_node(&target.place))?
         else {
             let fault = Diagnostic::error(
                 "deferred-target",

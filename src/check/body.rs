@@ -18,10 +18,14 @@ impl Checker<'_> {
         for (index, variable) in statics.iter_mut().enumerate() {
             variable.is_constant = !self.assigned.contains(&StaticId(index as u32));
         }
+        let ids: Vec<_> = modules.iter().map(|module| module.type_id).collect();
+        let with_interfaces = ids.iter().map(|&id| (id, self.interfaces_of(id)));
+        let interfaces = with_interfaces.filter(|(_, all)| !all.is_empty()).collect();
         let types = std::mem::take(&mut self.types);
         let (init, entries) = self.entries();
         Model {
             types,
+            interfaces,
             modules,
             methods,
             statics,
@@ -44,7 +48,7 @@ impl Checker<'_> {
         } = self.methods[id.0 as usize];
         let (name, params, result) = (name.to_owned(), params.clone(), result.clone());
         let this = owner.filter(|_| !is_static);
-        self.cx = Context::new(file, this);
+        self.cx = Context::new(file, this.map(|id| (id, self.object_type(id))));
         self.cx.owner = owner;
         self.cx.result.clone_from(&result);
         let body = match source {
@@ -53,12 +57,23 @@ impl Checker<'_> {
                     self.declare_local(&param.name, ty.clone(), false, None);
                 }
                 self.check_method_form(method, owner.is_some());
-                method.body.as_ref().map(|body| self.stmts(&body.stmts))
+                // A method of a module that has no body and is not abstract does nothing, as in GroIMP.
+                let empty = || (!self.is_abstract(id)).then(Vec::new);
+                match &method.body {
+                    Some(body) => Some(self.stmts(&body.stmts)),
+                    None => empty(),
+                }
+            }
+            MethodSource::Constructor(method) => {
+                for (param, ty) in method.params.iter().zip(&params) {
+                    self.declare_local(&param.name, ty.clone(), false, None);
+                }
+                owner.map(|owner| self.constructor_body(owner, method))
             }
             MethodSource::Initializer(block) => Some(self.stmts(&block.stmts)),
         };
         let span = match source {
-            MethodSource::Written(method) => method.span,
+            MethodSource::Written(method) | MethodSource::Constructor(method) => method.span,
             MethodSource::Initializer(block) => block.span,
         };
         let frame = self.finish(Body::Method(id));
@@ -97,18 +112,13 @@ impl Checker<'_> {
             );
             self.report(fault.hint("write `protected void init()`"));
         }
-        if method.body.is_none() && !(is_of_module && method.modifiers.is_abstract) {
+        if method.body.is_none() && !is_of_module {
             let fault = Diagnostic::error(
                 "missing-body",
                 name.span,
                 format!("method `{}` has no body", name.name),
             );
-            let hint = if is_of_module {
-                "write `{ … }`, or `abstract` in front"
-            } else {
-                "write `{ … }` or `[ … ]`"
-            };
-            self.report(fault.hint(hint));
+            self.report(fault.hint("write `{ … }` or `[ … ]`"));
         }
     }
 

@@ -114,7 +114,7 @@ impl Checker<'_> {
             }
         }
         if let Some(this) = self.cx.this {
-            let ty = Type::Node(this);
+            let ty = self.object_type(this);
             let overloads = self.object_overloads(&ty, name);
             groups.push(Group {
                 receiver: Some(in_slot(Slot(0), &ty)),
@@ -174,9 +174,15 @@ impl Checker<'_> {
         let mut found = vec![];
         let mut owners: Vec<&'static str> = vec![];
         match ty {
-            Type::Node(id) => {
-                let lineage: Vec<TypeId> =
+            Type::Node(id) | Type::Instance(id) => {
+                let mut lineage: Vec<TypeId> =
                     std::iter::successors(Some(*id), |t| self.types[*t].parent).collect();
+                lineage.extend(self.interfaces_of(*id));
+                owners.extend(
+                    self.library_class(*id)
+                        .into_iter()
+                        .flat_map(|class| class.lineage().map(ClassId::name)),
+                );
                 let own = self.method_names.get(name).map_or(&[][..], Vec::as_slice);
                 for ancestor in lineage {
                     let of = own
@@ -184,7 +190,9 @@ impl Checker<'_> {
                         .filter(|m| self.methods[m.0 as usize].owner == Some(ancestor));
                     found.extend(of.map(|m| self.method_overload(*m)));
                 }
-                found.extend(self.accessor_overloads(*id, name));
+                if matches!(ty, Type::Node(_)) {
+                    found.extend(self.accessor_overloads(*id, name));
+                }
             }
             Type::Class(class) => owners.extend(class.lineage().map(ClassId::name)),
             Type::String => owners.push("String"),
@@ -219,16 +227,8 @@ impl Checker<'_> {
         let is_super = matches!(object.kind, ast::ExprKind::Super);
         let (object, args) = if is_super {
             let this = self.this_type(object.span)?;
-            let parent = self.types[this].parent.unwrap_or(self.node);
-            let kind = ExprKind::Read(Place::Local(Slot(0)));
-            (
-                Some(Expr {
-                    kind,
-                    ty: Type::Node(parent),
-                    span: object.span,
-                }),
-                self.exprs(args),
-            )
+            let this = self.parent_value(this, object.span);
+            (Some(this), self.exprs(args))
         } else {
             (self.value(object), self.exprs(args))
         };
@@ -259,7 +259,7 @@ impl Checker<'_> {
             let method = &self.methods[id.0 as usize];
             let is_member = match (method.owner, &ty) {
                 (None, _) => file == Some(method.file),
-                (Some(module), Some(Type::Node(ty))) => {
+                (Some(module), Some(Type::Node(ty) | Type::Instance(ty))) => {
                     method.is_static && self.types.is_a(*ty, module)
                 }
                 _ => false,

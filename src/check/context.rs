@@ -104,14 +104,14 @@ pub(super) struct Context {
 }
 
 impl Context {
-    /// The context of a body in `file`; with `this` in slot 0 if there is one.
-    pub(super) fn new(file: usize, this: Option<TypeId>) -> Self {
-        let frame = this.map(Type::Node).into_iter().collect();
+    /// The context of a body in `file`; with `this` in slot 0 if there is one, of the type that goes with it.
+    pub(super) fn new(file: usize, this: Option<(TypeId, Type)>) -> Self {
+        let owner = this.as_ref().map(|(id, _)| *id);
         Self {
             file,
-            this,
-            owner: this,
-            frame,
+            this: owner,
+            owner,
+            frame: this.into_iter().map(|(_, ty)| ty).collect(),
             layers: vec![Layer::Block(vec![])],
             ..Self::default()
         }

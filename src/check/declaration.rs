@@ -1,6 +1,7 @@
 //! What the first pass knows of each declaration.
 
 use super::SourceModel;
+use super::class::ClassInfo;
 use super::model::{Constant, MethodId, Type};
 use crate::diag::Span;
 use crate::graph::{FieldId, TypeId, TypeTable};
@@ -44,7 +45,7 @@ pub(super) struct FieldInfo {
     pub(super) is_final: bool,
 }
 
-/// A module.
+/// A module or class.
 pub(super) struct ModuleInfo<'a> {
     pub(super) ast: &'a ast::Module,
     pub(super) file: usize,
@@ -55,6 +56,8 @@ pub(super) struct ModuleInfo<'a> {
     pub(super) defaults: Vec<Option<Constant>>,
     /// Whether its parent could not be found: nothing can be said about inherited members.
     pub(super) is_orphan: bool,
+    /// If it is a class.
+    pub(super) class: Option<ClassInfo>,
 }
 
 /// A method.
@@ -75,6 +78,7 @@ pub(super) struct MethodInfo<'a> {
 #[derive(Clone, Copy)]
 pub(super) enum MethodSource<'a> {
     Written(&'a ast::Method),
+    Constructor(&'a ast::Method),
     /// `{ … }` or `static { … }` at the top of a file.
     Initializer(&'a ast::Block),
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::class::ClassInfo;
 use super::declaration::{
     FieldInfo, MethodInfo, MethodSource, ModuleInfo, StaticInfo, StaticSource,
 };
@@ -9,12 +10,22 @@ use super::model::{MethodId, StaticId, Type};
 use super::{Checker, constant};
 use crate::diag::{Diagnostic, Span};
 use crate::graph::{FieldId, FieldKind, NewField, TypeId};
+use crate::library::ClassId;
 use crate::syntax::ast;
 
 /// More fields in one module are taken for a fault: field numbers are small.
 const MAX_FIELDS: usize = 4096;
 /// More types are taken for a fault: type numbers are small.
 const MAX_TYPES: usize = 60_000;
+
+/// A module or class as it was found in a file.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    file: usize,
+    module: &'a ast::Module,
+    /// Of a class whether it is an interface; `None` for modules.
+    is_interface: Option<bool>,
+}
 
 /// How the graph keeps a field of this type; the type need not be known for that.
 fn field_kind(ty: &ast::TypeRef) -> FieldKind {
@@ -58,7 +69,7 @@ pub(super) fn own_fields(
 impl<'a> Checker<'a> {
     /// Declares everything of all files.
     pub(super) fn declare(&mut self) {
-        self.refuse_classes();
+        self.refuse_enums();
         self.declare_modules();
         self.resolve_fields();
         for file in self.file_order() {
@@ -102,44 +113,49 @@ impl<'a> Checker<'a> {
         order
     }
 
-    /// Adds all modules to the table, each after the one it extends, else in textual order.
+    /// Adds all modules and classes to the table, each after the one it extends, else in textual order.
     fn declare_modules(&mut self) {
-        let mut found: HashMap<&'a str, (usize, &'a ast::Module)> = HashMap::new();
-        let mut order: Vec<(usize, &'a ast::Module)> = vec![];
-        for (file, info) in self.files.iter().enumerate() {
-            for item in &info.ast.items {
-                let ast::Item::Module(module) = item else {
-                    continue;
-                };
-                if let Some((_, first)) = found.get(module.name.name.as_str()) {
-                    let message = format!("module `{}` is declared twice", module.name.name);
-                    let fault = Diagnostic::error("duplicate-module", module.name.span, message);
-                    self.diagnostics
-                        .push(fault.also(first.name.span, "first here"));
-                    continue;
-                }
-                found.insert(&module.name.name, (file, module));
-                order.push((file, module));
+        let mut found: HashMap<&'a str, Found<'a>> = HashMap::new();
+        let mut order: Vec<Found<'a>> = vec![];
+        let modules = self.files.iter().enumerate().flat_map(|(file, info)| {
+            info.ast.items.iter().filter_map(move |item| match item {
+                ast::Item::Module(module) => Some((file, &**module, None)),
+                _ => None,
+            })
+        });
+        let classes = self
+            .classes
+            .iter()
+            .map(|class| (class.file, &class.module, Some(class.is_interface)));
+        for (file, module, is_interface) in modules.chain(classes) {
+            let new = Found {
+                file,
+                module,
+                is_interface,
+            };
+            if let Some(first) = found.get(module.name.name.as_str()) {
+                let message = format!("module `{}` is declared twice", module.name.name);
+                let fault = Diagnostic::error("duplicate-module", module.name.span, message);
+                self.diagnostics
+                    .push(fault.also(first.module.name.span, "first here"));
+                continue;
             }
+            found.insert(&module.name.name, new);
+            order.push(new);
         }
-        for &(file, module) in &order {
-            self.declare_lineage(file, module, &found);
+        for new in order {
+            self.declare_lineage(new, &found);
         }
     }
 
     /// Adds a module after those it extends.
-    fn declare_lineage(
-        &mut self,
-        file: usize,
-        module: &'a ast::Module,
-        found: &HashMap<&'a str, (usize, &'a ast::Module)>,
-    ) {
+    fn declare_lineage(&mut self, new: Found<'a>, found: &HashMap<&'a str, Found<'a>>) {
         // Walk up to what is known already, then add on the way back.
-        let mut waiting = vec![(file, module)];
-        let mut names = vec![module.name.name.as_str()];
+        let mut waiting = vec![new];
+        let mut names = vec![new.module.name.name.as_str()];
         while let Some(parent) = waiting
             .last()
-            .and_then(|(_, m)| m.extends.as_ref())
+            .and_then(|found| found.module.extends.as_ref())
             .and_then(|e| e.parent.path.last())
         {
             let name = parent.name.as_str();
@@ -162,25 +178,44 @@ impl<'a> Checker<'a> {
             names.push(name);
             waiting.push(next);
         }
-        while let Some((file, module)) = waiting.pop() {
-            if !self.module_names.contains_key(&module.name.name) {
-                self.add_module(file, module);
+        while let Some(new) = waiting.pop() {
+            if !self.module_names.contains_key(&new.module.name.name) {
+                self.add_module(new);
             }
         }
     }
 
-    fn add_module(&mut self, file: usize, module: &'a ast::Module) {
-        let parent = module
-            .extends
-            .as_ref()
-            .map(|extends| self.parent_type(&extends.parent));
-        let is_orphan = parent.is_some_and(|p| p.is_none());
-        let parent = parent.flatten().unwrap_or(self.node);
+    fn add_module(&mut self, new: Found<'a>) {
+        let Found {
+            file,
+            module,
+            is_interface,
+        } = new;
+        let extends = module.extends.as_ref().map(|extends| &extends.parent);
+        let (parent, is_orphan, class) = match is_interface {
+            None => {
+                let parent = extends.map(|parent| self.parent_type(parent));
+                let is_orphan = parent.is_some_and(|p| p.is_none());
+                (
+                    Some(parent.flatten().unwrap_or(self.default_parent)),
+                    is_orphan,
+                    None,
+                )
+            }
+            Some(is_interface) => {
+                let (parent, library) = self.class_parent(extends);
+                let class = ClassInfo {
+                    library,
+                    is_interface,
+                };
+                (parent, false, Some(class))
+            }
+        };
         let mut own: Vec<NewField> = own_fields(module)
             .map(|(ty, name, _)| NewField::new(&name.name, field_kind(ty)))
             .collect();
-        if own.len() + self.types[parent].fields.len() > MAX_FIELDS || self.types.len() >= MAX_TYPES
-        {
+        let n_inherited = parent.map_or(0, |parent| self.types[parent].fields.len());
+        if own.len() + n_inherited > MAX_FIELDS || self.types.len() >= MAX_TYPES {
             let message = format!(
                 "module `{}` is one too many or has too many fields",
                 module.name.name
@@ -191,12 +226,13 @@ impl<'a> Checker<'a> {
                 return;
             }
         }
-        let type_id = self.types.add_module(
-            &module.name.name,
-            parent,
-            module.modifiers.is_abstract,
-            &own,
-        );
+        let (name, is_abstract) = (&module.name.name, module.modifiers.is_abstract);
+        let type_id = match parent {
+            Some(parent) if class.is_none() => {
+                self.types.add_module(name, parent, is_abstract, &own)
+            }
+            parent => self.types.add_class(name, parent, is_abstract, &own),
+        };
         self.module_names.insert(module.name.name.clone(), type_id);
         self.modules.push(ModuleInfo {
             ast: module,
@@ -205,17 +241,31 @@ impl<'a> Checker<'a> {
             params: vec![],
             defaults: vec![],
             is_orphan,
+            class,
         });
+    }
+
+    /// What a class extends: a class of the model, and the library class behind it.
+    fn class_parent(&mut self, parent: Option<&ast::TypeRef>) -> (Option<TypeId>, Option<ClassId>) {
+        let Some(name) = parent.and_then(|parent| parent.path.last()) else {
+            return (None, None);
+        };
+        match self.module_names.get(&name.name).copied() {
+            Some(id) if self.class_info(id).is_some() => (Some(id), self.library_class(id)),
+            Some(_) => {
+                let message = format!("a class cannot extend the module `{}`", name.name);
+                let fault = Diagnostic::error("bad-extends", name.span, message);
+                self.report(fault.hint("write `module` instead of `class`"));
+                (None, None)
+            }
+            None => (None, self.library_parent(&name.name, name.span)),
+        }
     }
 
     /// The node type that a module extends.
     fn parent_type(&mut self, parent: &ast::TypeRef) -> Option<TypeId> {
         let name = parent.path.last()?.name.as_str();
-        let found = self
-            .module_names
-            .get(name)
-            .copied()
-            .or_else(|| self.types.find(name));
+        let found = self.node_type(name);
         if found.is_none() && !self.refused.contains(name) {
             let fault = self.unknown_node_type(name, parent.span);
             self.report(fault);
@@ -230,8 +280,9 @@ impl<'a> Checker<'a> {
                 ast, file, type_id, ..
             } = self.modules[index];
             self.cx.file = file;
-            let parent = self.types[type_id].parent.unwrap_or(self.node);
-            let mut fields = self.fields[usize::from(parent.0)].clone();
+            let parent = self.types[type_id].parent;
+            let inherited = parent.map(|parent| self.fields[usize::from(parent.0)].clone());
+            let mut fields = inherited.unwrap_or_default();
             let n_inherited = fields.len();
             let mut names: HashMap<&str, Span> = HashMap::new();
             for (ty, name, is_final) in own_fields(ast) {
@@ -248,7 +299,7 @@ impl<'a> Checker<'a> {
                 }
             }
             self.fields.push(fields);
-            self.resolve_params(index, parent, n_inherited);
+            self.resolve_params(index, parent.unwrap_or(self.node), n_inherited);
         }
     }
 
@@ -292,7 +343,6 @@ impl<'a> Checker<'a> {
     fn declare_member(&mut self, item: &'a ast::Item, owner: Option<TypeId>) {
         match item {
             ast::Item::Module(module) if owner.is_some() => self.refuse_nested_module(module),
-            ast::Item::Class(class) if owner.is_some() => self.refuse_class(class),
             ast::Item::Module(_) | ast::Item::Class(_) => {}
             ast::Item::Method(method) => self.declare_method(method, owner),
             ast::Item::Field(field) if owner.is_none() || field.modifiers.is_static => {
@@ -306,15 +356,22 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_method(&mut self, method: &'a ast::Method, owner: Option<TypeId>) {
-        let Some(result) = &method.result else {
-            self.refuse_constructor(method, owner);
-            return;
+        let is_constructor = self.is_constructor(method, owner);
+        let result = match &method.result {
+            Some(result) => self.resolve_type(result),
+            None if is_constructor => Some(Type::Void),
+            None => {
+                self.refuse_constructor(method);
+                return;
+            }
         };
-        let result = self.resolve_type(result);
         let params: Vec<_> = method.params.iter().map(|p| self.param_type(p)).collect();
         let id = MethodId(self.methods.len() as u32);
         let name = method.name.name.as_str();
-        let same = self.method_names.entry(name.into()).or_default();
+        let same = match owner {
+            Some(owner) if is_constructor => self.constructors.entry(owner).or_default(),
+            _ => self.method_names.entry(name.into()).or_default(),
+        };
         let twin = same.iter().find(|other| {
             let other = &self.methods[other.0 as usize];
             other.owner == owner
@@ -324,17 +381,22 @@ impl<'a> Checker<'a> {
         if let Some(twin) = twin {
             let message = format!("method `{name}` is declared twice with the same parameters");
             let mut fault = Diagnostic::error("duplicate-method", method.name.span, message);
-            if let MethodSource::Written(first) = self.methods[twin.0 as usize].source {
+            let twin = *twin;
+            if let Some(first) = self.written(twin) {
                 fault = fault.also(first.name.span, "first here");
             }
             self.report(fault);
             return;
         }
         same.push(id);
-        if let Some(owner) = owner {
+        if let Some(owner) = owner.filter(|_| !is_constructor) {
             self.methods_of.entry(owner).or_default().push(id);
         }
-        let source = MethodSource::Written(method);
+        let source = if is_constructor {
+            MethodSource::Constructor(method)
+        } else {
+            MethodSource::Written(method)
+        };
         let is_varargs = method.params.last().is_some_and(|p| p.is_varargs);
         let is_static = method.modifiers.is_static || owner.is_none();
         self.methods.push(MethodInfo {

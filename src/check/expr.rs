@@ -1,6 +1,6 @@
 //! Expressions: the dispatch, and the kinds that need no file of their own.
 
-use super::model::{Constant, Expr, ExprKind, Place, Slot, Type};
+use super::model::{Constant, Expr, ExprKind, Type};
 use super::names::{Binding, Target};
 use super::types::{is_integral, is_numeric, is_primitive, is_reference, promote_both};
 use super::{Checker, constant};
@@ -171,16 +171,15 @@ impl Checker<'_> {
             self.report(fault.hint("`this` is the node inside methods and bodies of modules"));
             return None;
         };
-        Some(Expr {
-            kind: ExprKind::Read(Place::Local(Slot(0))),
-            ty: Type::Node(this),
-            span,
-        })
+        Some(self.this_value(this, span))
     }
 
     /// `x.( … )` after `x` has been checked.
     pub(super) fn with(&mut self, object: Expr, body: &[ast::Stmt], span: Span) -> Option<Expr> {
-        if !matches!(object.ty, Type::Node(_) | Type::Class(_)) {
+        if !matches!(
+            object.ty,
+            Type::Node(_) | Type::Instance(_) | Type::Class(_)
+        ) {
             let message = format!(
                 "`.( … )` needs an object, found `{}`",
                 self.type_name(&object.ty)
@@ -416,6 +415,7 @@ impl Checker<'_> {
         let (ty, args) = (self.resolve_value_type(ty), self.exprs(args));
         match (ty?, args?) {
             (Type::Node(id), args) => self.new_node(id, args, span),
+            (Type::Instance(id), args) => self.new_instance(id, args, span),
             (Type::Class(class), args) => self.new_library_object(class, args, span),
             (Type::String, args) => self.new_string(args, span),
             (ty, _) => {

@@ -89,17 +89,13 @@ impl Checker<'_> {
         }
         if let ast::ExprKind::Super = object.kind {
             let this = self.this_type(object.span)?;
-            let object = Expr {
-                kind: ExprKind::Read(Place::Local(super::model::Slot(0))),
-                ty: Type::Node(this),
-                span,
-            };
+            let object = self.this_value(this, span);
             return self.node_member(object, name, member.span);
         }
         let object = self.value(object)?;
         self.probe_member(member, &object.ty);
         match object.ty.clone() {
-            Type::Node(_) => self.node_member(object, name, member.span),
+            Type::Node(_) | Type::Instance(_) => self.node_member(object, name, member.span),
             Type::Array(_) if name == "length" => {
                 let kind = ExprKind::ArrayLength(Box::new(object));
                 Some(Indexed::Value(Expr {
@@ -135,15 +131,32 @@ impl Checker<'_> {
         self.cx.this
     }
 
-    /// A property of a node.
+    /// The static variable `name` of a module or class, or of what it extends or implements.
+    fn static_of(&self, id: crate::graph::TypeId, name: &str) -> Option<super::model::StaticId> {
+        let all = self.static_names.get(name)?;
+        let owner = |id: &super::model::StaticId| self.statics[id.0 as usize].owner;
+        all.iter()
+            .copied()
+            .find(|variable| owner(variable).is_some_and(|o| self.is_kind_of(id, o)))
+    }
+
+    /// A property of a node, or a field of an object of a class.
     fn node_member(&mut self, object: Expr, name: &str, span: Span) -> Option<Indexed> {
-        let Type::Node(id) = object.ty else {
+        let (Type::Node(id) | Type::Instance(id)) = object.ty else {
             return None;
         };
         self.probe_object(name, Some(&object.ty));
         if let Some(field) = self.visible_field(id, name) {
             self.note_field(id, field, name, span);
             return self.field_target(object, id, field).map(Indexed::Target);
+        }
+        if let Some(own) = self.static_of(id, name) {
+            self.note_static(own, span);
+            return match self.static_binding(own, span) {
+                Binding::Target(target) => Some(Indexed::Target(target)),
+                Binding::Value(value) => Some(Indexed::Value(value)),
+                Binding::Poisoned => None,
+            };
         }
         if let Some(value) = self.derived_property(&object, id, name, span) {
             return Some(Indexed::Value(value));
@@ -173,15 +186,9 @@ impl Checker<'_> {
             found = Some(self.static_binding(id, span));
         }
         if found.is_none()
-            && let Some(Type::Node(module)) = self.named_type(owner)
+            && let Some(Type::Node(module) | Type::Instance(module)) = self.named_type(owner)
         {
-            let own = self.static_names.get(name).and_then(|all| {
-                all.iter().copied().find(|id| {
-                    self.statics[id.0 as usize]
-                        .owner
-                        .is_some_and(|o| self.types.is_a(module, o))
-                })
-            });
+            let own = self.static_of(module, name);
             found = own.map(|id| {
                 self.note_static(id, member.span);
                 self.static_binding(id, span)
@@ -259,7 +266,7 @@ impl Checker<'_> {
                     is_final: false,
                 }))
             }
-            Type::Node(_) => self.property(object, index),
+            Type::Node(_) | Type::Instance(_) => self.property(object, index),
             ty => {
                 let message = format!(
                     "`[ ]` needs an array or a node, found `{}`",

@@ -11,6 +11,7 @@ mod arithmetic;
 mod assign;
 mod body;
 mod call;
+mod class;
 mod coerce;
 mod constant;
 mod construct;
@@ -70,7 +71,8 @@ pub struct SourceModel {
 ///
 /// The model can be run only if there is no error among the diagnostics. Cost: linear in the size of the files.
 pub fn check(files: &[SourceModel]) -> (Model, Diagnostics) {
-    let mut checker = Checker::new(files);
+    let classes = class::collect(files);
+    let mut checker = Checker::new(files, &classes);
     checker.declare();
     let model = checker.bodies();
     let mut found = checker.diagnostics;
@@ -100,13 +102,20 @@ struct Checker<'a> {
     types: TypeTable,
     /// The type that all nodes extend.
     node: TypeId,
+    /// What modules extend that say nothing: like GroIMP's, they can be moved by `setTranslation`.
+    default_parent: TypeId,
     /// Number of built-in types; they come first in the table.
     n_builtin: usize,
     /// Fields by type and number.
     fields: Vec<Vec<FieldInfo>>,
     /// Modules in order of their types.
     modules: Vec<ModuleInfo<'a>>,
+    /// Modules and classes by name.
     module_names: HashMap<String, TypeId>,
+    /// Classes of the model, in order of the files.
+    classes: &'a [class::Declared],
+    /// Constructors that modules and classes wrote themselves.
+    constructors: HashMap<TypeId, Vec<MethodId>>,
     methods: Vec<MethodInfo<'a>>,
     method_names: HashMap<String, Vec<MethodId>>,
     /// Methods of each module.
@@ -132,10 +141,12 @@ struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    fn new(files: &'a [SourceModel]) -> Self {
+    fn new(files: &'a [SourceModel], classes: &'a [class::Declared]) -> Self {
         let types = turtle::types();
         let node = types.find("Node").unwrap_or(TypeId(0));
+        let default_parent = types.find("Null").unwrap_or(node);
         Self {
+            default_parent,
             files: files.iter().map(FileInfo::new).collect(),
             n_builtin: types.len(),
             fields: declaration::builtin_fields(&types, node),
@@ -143,6 +154,8 @@ impl<'a> Checker<'a> {
             node,
             modules: vec![],
             module_names: HashMap::new(),
+            classes,
+            constructors: HashMap::new(),
             methods: vec![],
             method_names: HashMap::new(),
             methods_of: HashMap::new(),

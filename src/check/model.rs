@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::diag::Span;
 use crate::graph::pattern::{EdgeKind, EdgeWay, Pattern};
 use crate::graph::{FieldId, TypeId, TypeTable};
-use crate::library::{ConstructorId, FunctionId, MethodId as LibraryMethodId};
+use crate::library::{ClassId, ConstructorId, FunctionId, MethodId as LibraryMethodId};
 
 pub use crate::library::Type;
 
@@ -27,8 +27,10 @@ pub struct MethodId(pub u32);
 pub struct Model {
     /// Built-in node types first, then the model's modules.
     pub types: TypeTable,
-    /// The model's modules, in order of their types.
+    /// The model's modules and classes, in order of their types.
     pub modules: Vec<Module>,
+    /// The interfaces of each module and class that has any, inherited ones included.
+    pub interfaces: BTreeMap<TypeId, Vec<TypeId>>,
     /// All methods: of files, of modules.
     pub methods: Vec<Method>,
     /// Fields of the files (variables of the model), all static in effect; initialized in this order. An initializer
@@ -42,11 +44,20 @@ pub struct Model {
     pub made_at: BTreeMap<TypeId, Vec<Span>>,
 }
 
-/// A module of the model.
+impl Model {
+    /// Whether an object of type `a` is one of type `b`: the same, or one that extends or implements it.
+    pub fn is_a(&self, a: TypeId, b: TypeId) -> bool {
+        self.types.is_a(a, b) || self.interfaces.get(&a).is_some_and(|all| all.contains(&b))
+    }
+}
+
+/// A module or class of the model.
 #[derive(Debug)]
 pub struct Module {
     /// Its type.
     pub type_id: TypeId,
+    /// Of a class: what library class its objects are, the nearest that it extends.
+    pub class: Option<ClassId>,
     /// Runs on a new node: calls the parent's constructor, stores parameters, runs initializers.
     pub constructor: Constructor,
     /// The geometry made when the graph is traversed; slot 0 is the module's node.
@@ -88,7 +99,7 @@ pub struct Instantiation {
 pub struct Method {
     /// Its name, for messages.
     pub name: String,
-    /// The type of `this`, for methods of modules.
+    /// The type of `this`, for methods of modules and classes.
     pub this: Option<TypeId>,
     /// Types of the parameters; they arrive in slots 1, 2, … with `this` in slot 0, or in 0, 1, … without.
     pub params: Vec<Type>,
@@ -184,12 +195,12 @@ pub enum StmtKind {
     Labeled(u16, Box<Stmt>),
     /// `throw e`: any value, shown as text.
     Throw(Expr),
-    /// `try/catch/finally`; catches match by the class name of the exception, `Exception` and `Throwable` match all.
+    /// `try/catch/finally`; catches match by the class of the exception, `Exception` and `Throwable` match all.
     Try {
         /// The body.
         body: Vec<Stmt>,
-        /// Class name, slot of the variable, handler.
-        catches: Vec<(String, Slot, Vec<Stmt>)>,
+        /// What is caught, slot of the variable, handler.
+        catches: Vec<(Vec<Type>, Slot, Vec<Stmt>)>,
         /// Runs always.
         finally: Vec<Stmt>,
     },
@@ -256,7 +267,7 @@ pub enum Place {
     Local(Slot),
     /// A variable of the model.
     Static(StaticId),
-    /// A field of a node.
+    /// A field of a node, or of an object of a class of the model, by the type of the expression.
     Field(Box<Expr>, FieldId),
     /// An element of an array.
     Element(Box<Expr>, Box<Expr>),
@@ -352,7 +363,7 @@ pub enum ExprKind {
     LibraryMethod(LibraryMethodId, Box<Expr>, Vec<Expr>),
     /// `new Vector3d(1, 2, 3)`
     NewObject(ConstructorId, Vec<Expr>),
-    /// `new F(1)`, or `F(1)` in a right-hand side.
+    /// `new F(1)`, or `F(1)` in a right-hand side; of a class an object that is no node.
     NewNode(Box<NewNode>),
     /// `x.(a = 1, setB(2))`: runs the statements with the object in `slot`, gives the object.
     With {
@@ -371,10 +382,10 @@ pub enum ExprKind {
     ArrayLength(Box<Expr>),
     /// `sum(seq)` and its kin.
     Aggregate(Aggregate, Box<Sequence>),
-    /// `selectWhereMin(seq, key)`: the element whose key is least; `slot` holds the element while `key` is evaluated.
+    /// `selectWhereMin(seq, key)` and its kin: one element by its key; `slot` holds the element while `key` is evaluated.
     SelectWhere {
-        /// Least (else greatest).
-        is_min: bool,
+        /// Which element.
+        selection: Selection,
         /// What is gone through.
         sequence: Box<Sequence>,
         /// Holds the element.
@@ -388,11 +399,24 @@ pub enum ExprKind {
     Comma(Vec<Expr>),
 }
 
+/// Which element of several is selected by its key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Selection {
+    /// The first with the least number.
+    Least,
+    /// The first with the greatest number.
+    Greatest,
+    /// The first for which the key is true (`selectWhere`).
+    First,
+}
+
 /// A constructor call.
 #[derive(Debug, Clone)]
 pub struct NewNode {
     /// What is made.
     pub type_id: TypeId,
+    /// The constructor that the module or class wrote itself, if it is called; it takes the arguments.
+    pub constructor: Option<MethodId>,
     /// Built-in types: which fields the arguments fill, in order. Modules: empty, the constructor's parameters are used.
     pub fields: Vec<FieldId>,
     /// Arguments, converted. Fewer than parameters: the rest is zero (modules), or the type's defaults (built-in types).

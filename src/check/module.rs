@@ -11,6 +11,7 @@ use super::overload::{Overload, Wanted};
 use super::types::is_reference;
 use crate::diag::{Diagnostic, Span};
 use crate::graph::{FieldId, TypeId};
+use crate::library::ClassId;
 use crate::syntax::ast;
 
 impl Checker<'_> {
@@ -20,6 +21,10 @@ impl Checker<'_> {
         for index in 0..self.modules.len() {
             let info = &self.modules[index];
             let (ast, type_id) = (info.ast, info.type_id);
+            let class = info
+                .class
+                .as_ref()
+                .map(|class| class.library.unwrap_or(ClassId::Instance));
             let constructor = self.constructor(index);
             let instantiation = ast
                 .instantiation
@@ -37,6 +42,7 @@ impl Checker<'_> {
             }
             all.push(Module {
                 type_id,
+                class,
                 constructor,
                 instantiation,
                 overrides,
@@ -50,7 +56,7 @@ impl Checker<'_> {
     fn constructor(&mut self, index: usize) -> Constructor {
         let info = &self.modules[index];
         let (ast, file, type_id, fields) = (info.ast, info.file, info.type_id, info.params.clone());
-        self.cx = Context::new(file, Some(type_id));
+        self.cx = Context::new(file, Some((type_id, self.object_type(type_id))));
         self.cx.result = Some(Type::Void);
         let mut params = vec![];
         self.cx.open();
@@ -69,20 +75,17 @@ impl Checker<'_> {
                 value: None,
             });
         }
-        let mut body: Vec<Stmt> = self.super_constructor(ast, type_id).into_iter().collect();
+        let span = ast
+            .extends
+            .as_ref()
+            .map_or(ast.name.span, |e| e.parent.span);
+        let mut body: Vec<Stmt> = self.super_call(type_id, None, span).into_iter().collect();
         // From here on the names of parameters mean the fields.
         self.cx.close();
         for (at, &field) in fields.iter().enumerate() {
             body.extend(self.store_param(type_id, field, at + 1, ast.name.span));
         }
-        if let Some(extends) = &ast.extends {
-            self.cx.open();
-            body.extend(self.stmts(&extends.with));
-            self.cx.close();
-        }
-        for item in &ast.members {
-            body.extend(self.field_initializer(type_id, item));
-        }
+        body.extend(self.initializers(type_id));
         let frame = self.finish(Body::Constructor(type_id));
         Constructor {
             params,
@@ -91,30 +94,22 @@ impl Checker<'_> {
         }
     }
 
-    fn super_constructor(&mut self, ast: &ast::Module, type_id: TypeId) -> Option<Stmt> {
-        let parent = self.types[type_id].parent?;
-        let (args, span) = match &ast.extends {
-            Some(extends) => (
-                extends.args.as_deref().unwrap_or_default(),
-                extends.parent.span,
-            ),
-            None => (&[][..], ast.name.span),
+    /// What a new object runs after its parent's constructor: `.( … )` of `extends`, initial values, blocks.
+    pub(super) fn initializers(&mut self, type_id: TypeId) -> Vec<Stmt> {
+        let Some(index) = usize::from(type_id.0).checked_sub(self.n_builtin) else {
+            return vec![];
         };
-        let args = self.exprs(args)?;
-        self.cx.facts.runs.push(Body::Constructor(parent));
-        let call = if args.is_empty() && usize::from(parent.0) < self.n_builtin {
-            NewNode {
-                type_id: parent,
-                fields: vec![],
-                args,
-            }
-        } else {
-            self.constructor_call(parent, args, span)?
-        };
-        Some(Stmt {
-            kind: StmtKind::SuperConstructor(Box::new(call)),
-            span,
-        })
+        let ast = self.modules[index].ast;
+        let mut body = vec![];
+        if let Some(extends) = &ast.extends {
+            self.cx.open();
+            body.extend(self.stmts(&extends.with));
+            self.cx.close();
+        }
+        for item in &ast.members {
+            body.extend(self.field_initializer(type_id, item));
+        }
+        body
     }
 
     /// `this.field = parameter`.
@@ -125,11 +120,7 @@ impl Checker<'_> {
         slot: usize,
         span: Span,
     ) -> Option<Stmt> {
-        let this = Expr {
-            kind: ExprKind::Read(Place::Local(Slot(0))),
-            ty: Type::Node(type_id),
-            span,
-        };
+        let this = self.this_value(type_id, span);
         let target = self.field_target(this, type_id, field)?;
         let slot = Slot(u16::try_from(slot).ok()?);
         let value = Expr {
@@ -154,11 +145,7 @@ impl Checker<'_> {
             ast::Item::Field(field) if !field.modifiers.is_static => {
                 let init = field.init.as_ref()?;
                 let span = field.name.span;
-                let this = Expr {
-                    kind: ExprKind::Read(Place::Local(Slot(0))),
-                    ty: Type::Node(type_id),
-                    span,
-                };
+                let this = self.this_value(type_id, span);
                 let Some(id) = self.types.field(type_id, &field.name.name) else {
                     return self.expr(init).and(None);
                 };
@@ -189,7 +176,7 @@ impl Checker<'_> {
 
     fn instantiation(&mut self, index: usize, body: &[ast::RhsItem]) -> Instantiation {
         let (file, type_id) = (self.modules[index].file, self.modules[index].type_id);
-        self.cx = Context::new(file, Some(type_id));
+        self.cx = Context::new(file, Some((type_id, Type::Node(type_id))));
         self.cx.result = Some(Type::Void);
         let body = self.productions(body);
         let frame = self.finish(Body::Instantiation(type_id));
@@ -262,6 +249,7 @@ impl Checker<'_> {
             .collect();
         Some(NewNode {
             type_id: id,
+            constructor: None,
             fields,
             args,
         })
@@ -275,6 +263,11 @@ impl Checker<'_> {
     ) -> Option<NewNode> {
         let info = &self.modules[module];
         let (type_id, defaults) = (info.type_id, info.defaults.clone());
+        if !self.constructors_of(type_id).is_empty()
+            && (defaults.is_empty() || self.is_for_constructor(type_id, &args))
+        {
+            return self.written_constructor_call(type_id, args, span);
+        }
         if info.is_orphan && info.params.len() != defaults.len() {
             return None;
         }
@@ -290,6 +283,7 @@ impl Checker<'_> {
             if missing.iter().all(Option::is_none) {
                 return Some(NewNode {
                     type_id,
+                    constructor: None,
                     fields: vec![],
                     args,
                 });
@@ -317,6 +311,7 @@ impl Checker<'_> {
         )?;
         Some(NewNode {
             type_id,
+            constructor: None,
             fields: vec![],
             args,
         })
@@ -326,9 +321,10 @@ impl Checker<'_> {
     fn own_overrides(&self, type_id: TypeId) -> Vec<(MethodId, MethodId)> {
         let mut found = vec![];
         let lineage = std::iter::successors(self.types[type_id].parent, |t| self.types[*t].parent);
-        let lineage: Vec<TypeId> = lineage
+        let mut lineage: Vec<TypeId> = lineage
             .take_while(|t| usize::from(t.0) >= self.n_builtin)
             .collect();
+        lineage.extend(self.interfaces_of(type_id));
         if lineage.is_empty() {
             return found;
         }
@@ -350,11 +346,26 @@ impl Checker<'_> {
         found
     }
 
+    /// Whether the arguments are those of a constructor that the module wrote itself.
+    fn is_for_constructor(&self, id: TypeId, args: &[Expr]) -> bool {
+        self.constructors_of(id).iter().any(|method| {
+            let params = &self.methods[method.0 as usize].params;
+            let fits = |(param, arg): (&Option<Type>, &Expr)| {
+                param
+                    .as_ref()
+                    .is_none_or(|ty| self.fit(&arg.ty, ty).is_some())
+            };
+            params.len() == args.len() && params.iter().zip(args).all(fits)
+        })
+    }
+
     /// Whether a method has no body because it is abstract.
     pub(super) fn is_abstract(&self, id: MethodId) -> bool {
         match self.methods[id.0 as usize].source {
-            MethodSource::Written(method) => method.body.is_none(),
-            MethodSource::Initializer(_) => false,
+            MethodSource::Written(method) => {
+                method.body.is_none() && (method.modifiers.is_abstract || self.is_of_interface(id))
+            }
+            MethodSource::Constructor(_) | MethodSource::Initializer(_) => false,
         }
     }
 
@@ -386,8 +397,9 @@ impl Checker<'_> {
 
     /// Reports abstract methods that a module leaves open.
     fn check_complete(&mut self, type_id: TypeId, ast: &ast::Module) {
-        let lineage: Vec<TypeId> =
+        let mut lineage: Vec<TypeId> =
             std::iter::successors(Some(type_id), |t| self.types[*t].parent).collect();
+        lineage.extend(self.interfaces_of(type_id));
         let mut done: Vec<(&str, &[Option<Type>])> = vec![];
         let mut open = vec![];
         for ancestor in &lineage {
@@ -403,11 +415,11 @@ impl Checker<'_> {
         }
         for name in open {
             let message = format!(
-                "module `{}` lacks the method `{name}` of its parent",
+                "`{}` lacks the method `{name}` of its parent",
                 ast.name.name
             );
             let fault = Diagnostic::error("missing-method", ast.name.span, message);
-            self.report(fault.hint("write it, or make the module `abstract`"));
+            self.report(fault.hint("write it, or put `abstract` in front of the declaration"));
         }
     }
 }

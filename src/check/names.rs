@@ -78,24 +78,25 @@ impl Checker<'_> {
             "double" => Type::Double,
             "String" => Type::String,
             "Object" => Type::Object,
-            _ => match self.node_type(name) {
-                Some(id) => Type::Node(id),
-                None if self.refused.contains(name) => return None,
-                None => Type::Class(ClassId::named(name)?),
+            _ => match (self.node_type(name), self.module_names.get(name)) {
+                (Some(id), _) => Type::Node(id),
+                (None, Some(&class)) => Type::Instance(class),
+                (None, None) if self.refused.contains(name) => return None,
+                (None, None) => Type::Class(ClassId::named(name)?),
             },
         })
     }
 
     /// The node type of this name: a module, else a built-in type.
     pub(super) fn node_type(&self, name: &str) -> Option<TypeId> {
-        let builtin = || {
-            if self.refused.contains(name) {
-                None
-            } else {
-                self.types.find(name)
-            }
-        };
-        self.module_names.get(name).copied().or_else(builtin)
+        match self.module_names.get(name) {
+            Some(&id) => self.class_info(id).is_none().then_some(id),
+            None if self.refused.contains(name) => None,
+            None => self
+                .types
+                .find(name)
+                .filter(|id| usize::from(id.0) < self.n_builtin),
+        }
     }
 
     /// The field of this name that can be written in a model.
@@ -143,7 +144,7 @@ impl Checker<'_> {
             }
         }
         if let Some(this) = self.cx.this
-            && let Some(found) = self.member_of_slot(Slot(0), &Type::Node(this), name, span)
+            && let Some(found) = self.member_of_slot(Slot(0), &self.object_type(this), name, span)
         {
             return Some(found);
         }
@@ -163,7 +164,7 @@ impl Checker<'_> {
             span,
         };
         match ty {
-            Type::Node(id) => {
+            Type::Node(id) | Type::Instance(id) => {
                 let field = self.visible_field(*id, name)?;
                 self.note_field(*id, field, name, span);
                 self.cx.touched.push(slot);

@@ -14,7 +14,7 @@ use crate::library::{ClassId, Effect};
 /// Whether a field or variable of this type may show something that others change.
 fn is_shared(ty: &Type) -> bool {
     match ty {
-        Type::Node(_) | Type::Array(_) | Type::Object => true,
+        Type::Node(_) | Type::Instance(_) | Type::Array(_) | Type::Object => true,
         Type::Class(class) => !class.is_a(ClassId::Shader) && !class.is_a(ClassId::Number),
         _ => false,
     }

@@ -2,7 +2,6 @@
 
 use super::Checker;
 use crate::diag::{Diagnostic, Span};
-use crate::graph::TypeId;
 use crate::syntax::ast;
 
 /// Types of GroIMP and Java that models use and that are not supported, with what to do instead.
@@ -159,25 +158,40 @@ pub(super) fn function_hint(name: &str) -> Option<&'static str> {
 }
 
 impl Checker<'_> {
-    /// Refuses classes at the top of files, before anything uses their names.
-    pub(super) fn refuse_classes(&mut self) {
+    /// Refuses enumerations, before anything uses their names.
+    pub(super) fn refuse_enums(&mut self) {
         for file in 0..self.files.len() {
-            for item in &self.files[file].ast.items {
-                if let ast::Item::Class(class) = item {
+            self.refuse_enums_of(&self.files[file].ast.items);
+        }
+    }
+
+    fn refuse_enums_of(&mut self, items: &[ast::Item]) {
+        for item in items {
+            match item {
+                ast::Item::Class(class) if class.keyword.name == "enum" => {
                     self.refuse_class(class);
                 }
+                ast::Item::Class(class) => self.refuse_enums_of(&class.members),
+                ast::Item::Module(module) => self.refuse_enums_of(&module.members),
+                _ => {}
             }
         }
     }
 
-    /// `class`, `interface`, `enum`.
+    /// `enum`, and classes inside methods.
     pub(super) fn refuse_class(&mut self, class: &ast::Class) {
         let keyword = class.keyword.name.as_str();
-        let hint = match keyword {
-            "enum" => "declare constants: `const int RED = 0;`",
-            _ => "keep data in modules or arrays, and write methods into the file",
+        let (message, hint) = if keyword == "enum" {
+            (
+                "`enum` is not supported".to_owned(),
+                "declare constants: `const int RED = 0;`",
+            )
+        } else {
+            (
+                format!("a `{keyword}` inside a method is not supported"),
+                "declare it outside of the method",
+            )
         };
-        let message = format!("`{keyword}` is not supported");
         self.report(Diagnostic::error("unsupported-class", class.name.span, message).hint(hint));
         self.refused.insert(class.name.name.clone());
         self.refused
@@ -195,21 +209,11 @@ impl Checker<'_> {
         self.refused.insert(module.name.name.clone());
     }
 
-    /// A method without a result type.
-    pub(super) fn refuse_constructor(&mut self, method: &ast::Method, owner: Option<TypeId>) {
+    /// A method without a result type that is no constructor.
+    pub(super) fn refuse_constructor(&mut self, method: &ast::Method) {
         let name = &method.name.name;
-        let is_constructor = owner.is_some_and(|owner| *self.types[owner].name == **name);
-        let (message, hint) = if is_constructor {
-            (
-                "modules cannot have constructors of their own".to_owned(),
-                "use parameters and a block `{ … }`".to_owned(),
-            )
-        } else {
-            (
-                format!("method `{name}` has no result type"),
-                format!("write `void {name}(…)` if it gives no value"),
-            )
-        };
+        let message = format!("method `{name}` has no result type");
+        let hint = format!("write `void {name}(…)` if it gives no value");
         self.report(Diagnostic::error("no-result-type", method.name.span, message).hint(hint));
         self.refused.insert(name.clone());
     }

@@ -402,8 +402,7 @@ impl Checker<'_> {
 
     fn throw(&mut self, value: &ast::Expr) -> Option<StmtKind> {
         let value = self.value(value)?;
-        let is_throwable =
-            matches!(&value.ty, Type::Class(class) if class.is_a(ClassId::Throwable));
+        let is_throwable = self.is_subtype(&value.ty, &Type::Class(ClassId::Throwable));
         if !is_throwable && value.ty != Type::String {
             let message = format!(
                 "only exceptions can be thrown, found `{}`",
@@ -416,35 +415,43 @@ impl Checker<'_> {
         Some(StmtKind::Throw(value))
     }
 
+    /// The type of an exception that is caught; reported if it cannot be thrown.
+    fn caught_type(&mut self, ty: &ast::TypeRef) -> Option<Type> {
+        let found = self.resolve_value_type(ty)?;
+        if !self.is_subtype(&found, &Type::Class(ClassId::Throwable)) {
+            let message = format!(
+                "only exceptions can be caught, found `{}`",
+                self.type_name(&found)
+            );
+            self.report(Diagnostic::error("bad-catch", ty.span, message));
+        }
+        Some(found)
+    }
+
     fn try_stmt(
         &mut self,
         body: &ast::Block,
-        catches: &[(ast::Param, ast::Block)],
+        catches: &[ast::Catch],
         finally: Option<&ast::Block>,
     ) -> StmtKind {
         let body = self.block(body);
         let mut handlers = vec![];
-        for (param, block) in catches {
+        for catch in catches {
             self.cx.open();
-            let ty = self.resolve_value_type(&param.ty);
-            let is_throwable =
-                |ty: &Type| matches!(ty, Type::Class(class) if class.is_a(ClassId::Throwable));
-            if let Some(found) = ty.as_ref().filter(|ty| !is_throwable(ty)) {
-                let message = format!(
-                    "only exceptions can be caught, found `{}`",
-                    self.type_name(found)
-                );
-                self.report(Diagnostic::error("bad-catch", param.ty.span, message));
+            let mut types = vec![];
+            for ty in &catch.types {
+                types.extend(self.caught_type(ty));
             }
-            let class = param
-                .ty
-                .path
-                .last()
-                .map_or(String::new(), |name| name.name.clone());
-            let slot = self.declare_local(&param.name, ty, false, None);
-            let handler = self.stmts(&block.stmts);
+            // What several types have in common is that they can be thrown.
+            let ty = match types.as_slice() {
+                [] => None,
+                [only] => Some(only.clone()),
+                _ => Some(Type::Class(ClassId::Throwable)),
+            };
+            let slot = self.declare_local(&catch.name, ty, false, None);
+            let handler = self.stmts(&catch.body.stmts);
             self.cx.close();
-            handlers.push((class, slot, handler));
+            handlers.push((types, slot, handler));
         }
         let finally = finally.map_or(vec![], |block| self.block(block));
         StmtKind::Try {

@@ -381,7 +381,7 @@ fn queries_become_sequences() {
         ),
         (
             "A a = selectWhereMin((* x:A *), x[v]);",
-            "let #3 = select(true, query[#0:A]#0, #0.v)",
+            "let #3 = select(Least, query[#0:A]#0, #0.v)",
         ),
         (
             "for ((* x:A y:F *)) { x.v = 1; }",
@@ -654,9 +654,20 @@ fn faults_are_named_once_each_with_advice() {
             ],
         ),
         (
-            "class C { } void f() { C c = new C(); c.x = 1; C.y(); }",
+            "class C { } void f() { C c = new C(); c.x = 1; C.y(); new C(3); }",
             &[
-                "1: unsupported-class: `class` is not supported | keep data in modules or arrays, and write methods into the file",
+                "1: unknown-property: `C` has no property `x`",
+                "1: unknown-function: `C` has no function `y`",
+                "1: wrong-arguments: `C` has no constructor with arguments | write `C(…) { … }` in the class",
+            ],
+        ),
+        (
+            "abstract class A { abstract int f(); } interface I { void g(); } class B extends A { } class C implements I { } class D extends String { } void f() { new A(); }",
+            &[
+                "1: missing-method: `B` lacks the method `f` of its parent | write it, or put `abstract` in front of the declaration",
+                "1: missing-method: `C` lacks the method `g` of its parent | write it, or put `abstract` in front of the declaration",
+                "1: bad-extends: a class of the model cannot extend `String` | of the library only exceptions can be extended; keep the object in a field",
+                "1: abstract-module: `A` is abstract and cannot be made | make a class that extends it",
             ],
         ),
         (
@@ -697,7 +708,7 @@ fn faults_are_named_once_each_with_advice() {
         (
             "abstract module A { abstract int f(); } module B extends A; void g() [ Axiom ==> A; ]",
             &[
-                "1: missing-method: module `B` lacks the method `f` of its parent | write it, or make the module `abstract`",
+                "1: missing-method: `B` lacks the method `f` of its parent | write it, or put `abstract` in front of the declaration",
                 "1: abstract-module: `A` is abstract and cannot be made | make a module that extends it",
             ],
         ),

@@ -111,6 +111,10 @@ impl Checker<'_> {
             (Type::Null, to) => is_reference(to),
             (from, Type::Object) => is_reference(from),
             (Type::Node(a), Type::Node(b)) => self.types.is_a(*a, *b),
+            (Type::Node(a) | Type::Instance(a), Type::Instance(b)) => self.is_kind_of(*a, *b),
+            (Type::Instance(a), Type::Class(b)) => {
+                self.library_class(*a).is_some_and(|class| class.is_a(*b))
+            }
             (Type::Class(a), Type::Class(b)) => a.is_a(*b),
             (from, to) => from == to,
         }
@@ -141,6 +145,11 @@ impl Checker<'_> {
         }
         match (from, to) {
             (Type::Object, _) => *to != Type::Void,
+            (Type::Instance(a), Type::Node(_) | Type::Instance(_))
+                if self.class_info(*a).is_some_and(|class| class.is_interface) =>
+            {
+                true
+            }
             (Type::Class(ClassId::Number), to) => is_numeric(to) || self.is_subtype(to, from),
             _ => is_reference(from) && self.is_subtype(to, from),
         }
@@ -160,7 +169,7 @@ impl Checker<'_> {
             Type::Float => "float".into(),
             Type::Double => "double".into(),
             Type::String => "String".into(),
-            Type::Node(id) => self.types[*id].name.to_string(),
+            Type::Node(id) | Type::Instance(id) => self.types[*id].name.to_string(),
             Type::Class(class) => class.name().into(),
             Type::Array(element) => format!("{}[]", self.type_name(element)),
             Type::Object => "Object".into(),

@@ -10,6 +10,7 @@ use super::memory::Charge;
 use super::random::JavaRandom;
 use super::text::Text;
 use super::value::{Value, free};
+use crate::graph::TypeId;
 use crate::library::ClassId;
 
 /// An object of a library class.
@@ -45,6 +46,23 @@ pub enum Data {
     Buffer(String, Charge),
     /// Something thrown.
     Throwable(Option<Arc<Text>>),
+    /// An object of a class of the model.
+    Instance(Box<Instance>),
+}
+
+/// An object of a class of the model.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Its class.
+    pub ty: TypeId,
+    /// The name of its class.
+    pub name: Arc<str>,
+    /// Its fields.
+    pub fields: Vec<Value>,
+    /// The message of what can be thrown.
+    pub message: Option<Arc<Text>>,
+    /// What it takes of the memory budget.
+    pub charge: Charge,
 }
 
 /// Elements of a list, and the share of the memory budget they take.
@@ -148,6 +166,14 @@ impl Object {
         }
     }
 
+    /// The class of the model that it is an object of, if it is one.
+    pub fn instance_type(&self) -> Option<TypeId> {
+        match &*self.lock() {
+            Data::Instance(instance) => Some(instance.ty),
+            _ => None,
+        }
+    }
+
     /// `equals` for two different objects that stand in so many collections.
     pub(super) fn equals(a: &Arc<Self>, b: &Arc<Self>, depth: usize) -> bool {
         let (left, right) = (a.lock().clone(), b.lock().clone());
@@ -168,6 +194,7 @@ impl Object {
         match self.data.get_mut().unwrap_or_else(PoisonError::into_inner) {
             Data::List(list) => parts.append(&mut list.values),
             Data::Map(map) => parts.extend(std::mem::take(&mut **map).into_parts()),
+            Data::Instance(instance) => parts.append(&mut instance.fields),
             _ => {}
         }
     }
@@ -211,6 +238,13 @@ impl Object {
             Data::Throwable(message) => {
                 out.push_str(&qualified(self.class));
                 if let Some(message) = message {
+                    out.push_str(": ");
+                    out.push_str(message.as_str());
+                }
+            }
+            Data::Instance(instance) => {
+                out.push_str(&instance.name);
+                if let Some(message) = instance.message {
                     out.push_str(": ");
                     out.push_str(message.as_str());
                 }

@@ -73,9 +73,8 @@ pub fn is_word(ty: &Type) -> bool {
     match ty {
         Type::Boolean | Type::Byte | Type::Short | Type::Char | Type::Int | Type::Long => true,
         Type::Float | Type::Double | Type::Node(_) => true,
-        Type::Void | Type::Null | Type::String | Type::Class(_) | Type::Array(_) | Type::Object => {
-            false
-        }
+        Type::Void | Type::Null | Type::String | Type::Array(_) | Type::Object => false,
+        Type::Class(_) | Type::Instance(_) => false,
     }
 }
 

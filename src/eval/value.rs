@@ -9,7 +9,7 @@ use super::decimal::{java_double_to_string, java_float_to_string};
 use super::memory::Charge;
 use super::object::Object;
 use super::text::{Text, char_of};
-use crate::graph::NodeId;
+use crate::graph::{Graph, NodeId, TypeId};
 use crate::library::ClassId;
 
 /// Longest text, in bytes.
@@ -47,6 +47,15 @@ impl Value {
     pub fn as_text(&self) -> Option<&Text> {
         match self {
             Self::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The module or class of the model that a node or an object is of.
+    pub fn type_in(&self, graph: &Graph<Value>) -> Option<TypeId> {
+        match self {
+            Self::Node(node) => graph.type_of(*node).ok(),
+            Self::Object(object) => object.instance_type(),
             _ => None,
         }
     }

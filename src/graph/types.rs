@@ -226,6 +226,18 @@ impl TypeTable {
         self.add(name, Some(parent), is_abstract, builtin, own_fields)
     }
 
+    /// Adds a class of the model. Its objects are no nodes: they stand in no graph, only its fields are described here.
+    pub fn add_class(
+        &mut self,
+        name: &str,
+        parent: Option<TypeId>,
+        is_abstract: bool,
+        own_fields: &[NewField],
+    ) -> TypeId {
+        let id = TypeId(self.types.len() as u16);
+        self.add(name, parent, is_abstract, id, own_fields)
+    }
+
     fn add(
         &mut self,
         name: &str,

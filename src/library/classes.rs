@@ -70,6 +70,7 @@ classes! {
     HashMap: Map, "Values by key.";
     StringBuffer, "Text that can be appended to.";
     StringBuilder, "Text that can be appended to.";
+    Instance, "An object of a class of the model.";
     Throwable, "What can be thrown.";
     Error: Throwable, "A serious fault.";
     Exception: Throwable, "What can be thrown and is usually caught.";
@@ -99,7 +100,8 @@ static BY_NAME: LazyLock<HashMap<&'static str, ClassId>> = LazyLock::new(|| {
 impl ClassId {
     /// The class with this simple name.
     pub fn named(name: &str) -> Option<Self> {
-        BY_NAME.get(name).copied()
+        let found = BY_NAME.get(name).copied();
+        found.filter(|class| *class != Self::Instance)
     }
 
     /// The class itself, its parent, its parent's parent, ….

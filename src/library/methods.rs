@@ -162,6 +162,7 @@ signatures! {
     BuilderLength = "StringBuilder"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
 
     ThrowableMessage = "Throwable"."getMessage"() -> String, Pure, "", "Its message.";
+    ThrowableSetMessage = "Throwable"."=message"(String) -> Void, Writes, "", "Sets its message.";
     ThrowablePrintStackTrace = "Throwable"."printStackTrace"() -> Void, Prints, "", "Prints it.";
 }
 

@@ -21,6 +21,8 @@ pub enum Type {
     String,
     /// A node of this type or of one that extends it.
     Node(TypeId),
+    /// An object of this class of the model, or of one that extends it.
+    Instance(TypeId),
     /// A library class.
     Class(ClassId),
     Array(Box<Type>),

@@ -125,6 +125,8 @@ pub struct Class {
     pub name: Ident,
     /// `extends`
     pub extends: Option<TypeRef>,
+    /// `implements`
+    pub implements: Vec<TypeRef>,
     /// Enum constants.
     pub constants: Vec<Ident>,
     /// Body.
@@ -241,7 +243,7 @@ pub enum StmtKind {
         /// `try { }`
         body: Block,
         /// `catch (T e) { }`, in order.
-        catches: Vec<(Param, Block)>,
+        catches: Vec<Catch>,
         /// `finally { }`
         finally: Option<Block>,
     },
@@ -249,6 +251,17 @@ pub enum StmtKind {
     Class(Box<Class>),
     /// Text that could not be read; its diagnostic has been given already.
     Broken,
+}
+
+/// `catch (T | U e) { }`
+#[derive(Clone, Debug)]
+pub struct Catch {
+    /// What is caught.
+    pub types: Vec<TypeRef>,
+    /// The variable that holds it.
+    pub name: Ident,
+    /// What is done about it.
+    pub body: Block,
 }
 
 /// `final? T name = init`

@@ -209,8 +209,13 @@ pub(super) fn stmt(stmt: &Stmt) -> String {
             catches,
             finally,
         } => {
-            let catches = join(catches, "", |(what, body)| {
-                format!(" catch ({}) {}", param(what), block(body))
+            let catches = join(catches, "", |catch| {
+                let types = join(&catch.types, " | ", ty);
+                format!(
+                    " catch ({types} {}) {}",
+                    catch.name.name,
+                    block(&catch.body)
+                )
             });
             let finally = finally
                 .as_ref()

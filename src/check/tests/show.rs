@@ -168,13 +168,13 @@ impl Show<'_> {
                 format!("{which:?}:{}({})", self.ty(&e.ty), self.sequence(seq))
             }
             ExprKind::SelectWhere {
-                is_min,
+                selection,
                 sequence,
                 key,
                 ..
             } => {
                 format!(
-                    "select({is_min}, {}, {})",
+                    "select({selection:?}, {}, {})",
                     self.sequence(sequence),
                     self.expr(key)
                 )

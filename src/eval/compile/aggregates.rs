@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::sequences::{Iterate, Turn, read_place};
 use super::{Scope, arrays, convert};
-use crate::check::model::{Aggregate, Expr, Sequence, Slot, Type};
+use crate::check::model::{Aggregate, Expr, Selection, Sequence, Slot, Type};
 use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::array::{Array, Elements};
@@ -52,36 +52,63 @@ impl Scope<'_> {
         }
     }
 
-    /// `selectWhereMin` and `selectWhereMax`: of several elements whose key is extreme the last.
+    /// `selectWhereMin` and `selectWhereMax`: of several elements whose key is extreme the last; `selectWhere`: the first
+    /// whose key is true.
     pub(super) fn select_where(
         &self,
-        is_min: bool,
+        selection: Selection,
         sequence: &Sequence,
         slot: Slot,
         key: &Expr,
         ty: &Type,
     ) -> Code {
         let elements = self.sequence(sequence, Some(self.local(slot)));
-        let key = f64::from_code(convert::number(self.expr(key), &Type::Double));
         let (Local::Word(at) | Local::Value(at)) = self.local(slot);
-        fn select<T: Access>(elements: Iterate, key: Source<f64>, at: u32, is_min: bool) -> Code {
+        fn select<T: Access>(
+            elements: Iterate,
+            key: Source<f64>,
+            at: u32,
+            selection: Selection,
+        ) -> Code {
             T::into_code(Source::code(move |p, m| {
                 let mut best: Option<(f64, T)> = None;
                 elements(p, m, &mut |p, m| {
                     let value = T::load(&m.stack, at);
                     let key = key.get(p, m)?;
-                    let is_better = |old: f64| if is_min { key <= old } else { key >= old };
-                    if best.as_ref().is_none_or(|(old, _)| is_better(*old)) {
-                        best = Some((key, value));
+                    let is_better = match (selection, &best) {
+                        (Selection::First, _) => key > 0.0,
+                        (_, None) => true,
+                        (Selection::Least, Some((old, _))) => key <= *old,
+                        (Selection::Greatest, Some((old, _))) => key >= *old,
+                    };
+                    if !is_better {
+                        return Ok(Turn::Next);
                     }
-                    Ok(Turn::Next)
+                    best = Some((key, value));
+                    Ok(match selection {
+                        Selection::First => Turn::Stop,
+                        Selection::Least | Selection::Greatest => Turn::Next,
+                    })
                 })?;
                 Ok(best.map(|(_, value)| value).unwrap_or_default())
             }))
         }
+        let key = match selection {
+            Selection::First => self.boolean(key).map(|b| f64::from(u8::from(b))),
+            Selection::Least | Selection::Greatest => {
+                f64::from_code(convert::number(self.expr(key), &Type::Double))
+            }
+        };
         match ty {
-            Type::Node(_) => select::<Option<NodeId>>(elements, key, at, is_min),
-            _ => select::<Value>(elements, key, at, is_min),
+            Type::Boolean => select::<bool>(elements, key, at, selection),
+            Type::Byte | Type::Short | Type::Char | Type::Int => {
+                select::<i32>(elements, key, at, selection)
+            }
+            Type::Long => select::<i64>(elements, key, at, selection),
+            Type::Float => select::<f32>(elements, key, at, selection),
+            Type::Double => select::<f64>(elements, key, at, selection),
+            Type::Node(_) => select::<Option<NodeId>>(elements, key, at, selection),
+            _ => select::<Value>(elements, key, at, selection),
         }
     }
 

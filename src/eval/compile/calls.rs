@@ -1,4 +1,6 @@
-//! Calls of methods, and the making of nodes.
+//! Calls of methods, and the making of nodes and objects.
+
+use std::sync::Arc;
 
 use super::{Scope, convert, places};
 use crate::check::model::{Expr, MethodId, Model, NewNode, Slot, Stmt, Type};
@@ -6,11 +8,13 @@ use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::code::{Code, FromCode, Source};
 use crate::eval::machine::Machine;
+use crate::eval::object::{Data, Instance, Object};
 use crate::eval::program::Program;
 use crate::eval::stack::{Kind, Local, is_word};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
-use crate::graph::{NodeId, TypeId};
+use crate::graph::{FieldKind, NodeId, TypeId};
+use crate::library::ClassId;
 
 /// A call as the checker resolved it.
 pub(super) struct CallSite<'e> {
@@ -44,7 +48,10 @@ impl Scope<'_> {
             .map(|(a, ty)| self.as_type(a, ty))
             .collect();
         let invoke = match site.receiver {
-            Some(receiver) => self.invoke_on(site, self.node(receiver), args, span),
+            Some(receiver) if matches!(receiver.ty, Type::Node(_)) => {
+                self.invoke_on(site, self.node(receiver), args, span)
+            }
+            Some(receiver) => self.invoke_on_object(site, self.value(receiver), args, span),
             None => invoke_static(site.method, args, span),
         };
         fn result<T: FromCode>(invoke: Invoke) -> Code {
@@ -99,6 +106,36 @@ impl Scope<'_> {
         })
     }
 
+    /// A call on an object of a class of the model, or on whatever implements an interface.
+    fn invoke_on_object(
+        &self,
+        site: &CallSite<'_>,
+        receiver: Source<Value>,
+        args: Vec<Code>,
+        span: Span,
+    ) -> Invoke {
+        let name = self.model.methods[site.method.0 as usize].name.clone();
+        let own = site.method;
+        let overrides = site.is_virtual.then(|| override_table(self.model, own));
+        Box::new(move |p, m| {
+            let receiver = receiver.get(p, m)?;
+            let Some(ty) = receiver.type_in(&m.graph) else {
+                let what = format!("call the method `{name}` of an object");
+                return Err(Trap::null(&what, span));
+            };
+            let method = overrides
+                .as_ref()
+                .map_or(own, |table| table[usize::from(ty.0)]);
+            let mark = m.stack.mark();
+            match receiver {
+                Value::Node(node) => Some(node).push(&mut m.stack),
+                object => object.push(&mut m.stack),
+            }
+            push_all(&args, p, m)?;
+            p.run_method(method, m, mark, span)
+        })
+    }
+
     /// `x.(a = 1, setB(2))`
     pub(super) fn with(&self, object: &Expr, slot: Slot, body: &[Stmt]) -> Code {
         let (object, body) = (self.expr(object), self.block(body));
@@ -119,6 +156,9 @@ impl Scope<'_> {
 
     /// `new F(1)`: a node that is not in the graph yet.
     pub(super) fn new_node(&self, new: &NewNode, span: Span) -> Code {
+        if let Some(class) = self.class_of(new.type_id) {
+            return self.new_instance(new, class, span);
+        }
         let (ty, fill) = (new.type_id, self.fill_node(new, span));
         Code::Node(Source::code(move |p, m| {
             m.settle(span)?;
@@ -131,20 +171,64 @@ impl Scope<'_> {
         }))
     }
 
-    /// Runs the constructor of `new`'s type on a node that exists already.
-    pub(super) fn fill_node(&self, new: &NewNode, span: Span) -> FillNode {
-        match self
-            .model
-            .modules
-            .iter()
-            .find(|module| module.type_id == new.type_id)
-        {
-            Some(module) => self.fill_module(new, &module.constructor.params, span),
-            None => self.fill_builtin(new, span),
-        }
+    /// The library class of the objects of a class of the model; `None` for modules and built-in types.
+    fn class_of(&self, ty: TypeId) -> Option<ClassId> {
+        let mut modules = self.model.modules.iter();
+        modules.find(|module| module.type_id == ty)?.class
     }
 
-    fn fill_module(&self, new: &NewNode, params: &[Type], span: Span) -> FillNode {
+    /// `new C(1)` of a class of the model.
+    fn new_instance(&self, new: &NewNode, class: ClassId, span: Span) -> Code {
+        let (ty, fill) = (new.type_id, self.fill_instance(new, span));
+        let info = &self.model.types[ty];
+        let name = Arc::clone(&info.name);
+        let fields: Vec<Value> = info
+            .fields
+            .iter()
+            .map(|field| first_value(field.kind))
+            .collect();
+        let bytes = INSTANCE_BYTES + VALUE_BYTES * fields.len() as u64;
+        Code::Value(Source::code(move |p, m| {
+            let instance = Instance {
+                ty,
+                name: Arc::clone(&name),
+                fields: fields.clone(),
+                message: None,
+                charge: m.charge(bytes).map_err(|trap| trap.at(span))?,
+            };
+            let data = Data::Instance(Box::new(instance));
+            let object = Value::Object(Arc::new(Object::new(class, data)));
+            fill(p, m, object.clone())?;
+            Ok(object)
+        }))
+    }
+
+    /// Runs the constructor of `new`'s type on a node that exists already.
+    pub(super) fn fill_node(&self, new: &NewNode, span: Span) -> FillNode {
+        let fill: FillAny<Option<NodeId>> = match self.constructor_of(new) {
+            Some(params) => self.fill_any(new, &params, span),
+            None => return self.fill_builtin(new, span),
+        };
+        Box::new(move |p, m, node| fill(p, m, Some(node)))
+    }
+
+    /// Runs the constructor of `new`'s class on an object that exists already.
+    pub(super) fn fill_instance(&self, new: &NewNode, span: Span) -> FillAny<Value> {
+        let params = self.constructor_of(new).unwrap_or_default();
+        self.fill_any(new, &params, span)
+    }
+
+    /// The parameters of the constructor that is called; `None` for built-in types.
+    fn constructor_of(&self, new: &NewNode) -> Option<Vec<Type>> {
+        if let Some(method) = new.constructor {
+            return Some(self.model.methods[method.0 as usize].params.clone());
+        }
+        let mut modules = self.model.modules.iter();
+        let module = modules.find(|module| module.type_id == new.type_id)?;
+        Some(module.constructor.params.clone())
+    }
+
+    fn fill_any<T: Kind>(&self, new: &NewNode, params: &[Type], span: Span) -> FillAny<T> {
         let mut args: Vec<Code> = new
             .args
             .iter()
@@ -152,12 +236,15 @@ impl Scope<'_> {
             .map(|(a, ty)| self.as_type(a, ty))
             .collect();
         args.extend(params[args.len()..].iter().map(zero));
-        let ty = new.type_id;
-        Box::new(move |p, m, node| {
+        let (ty, constructor) = (new.type_id, new.constructor);
+        Box::new(move |p, m, this| {
             let mark = m.stack.mark();
-            Some(node).push(&mut m.stack);
+            this.push(&mut m.stack);
             push_all(&args, p, m)?;
-            p.run_constructor(ty, m, mark, span)
+            match constructor {
+                Some(method) => p.run_method(method, m, mark, span),
+                None => p.run_constructor(ty, m, mark, span),
+            }
         })
     }
 
@@ -171,6 +258,26 @@ impl Scope<'_> {
             .map(|(id, arg)| set_field(field(*id), self.expr(arg), span))
             .collect();
         Box::new(move |p, m, node| setters.iter().try_for_each(|set| set(p, m, node)))
+    }
+}
+
+/// Bytes that an object takes besides its fields, and that a field takes.
+const INSTANCE_BYTES: u64 = 160;
+const VALUE_BYTES: u64 = 16;
+
+/// Runs a constructor on a new node or object.
+pub(super) type FillAny<T> =
+    Box<dyn Fn(&Program, &mut Machine, T) -> Result<(), Trap> + Send + Sync>;
+
+/// What a field of a new object holds.
+fn first_value(kind: FieldKind) -> Value {
+    match kind {
+        FieldKind::Boolean => Value::Boolean(false),
+        FieldKind::Byte | FieldKind::Short | FieldKind::Char | FieldKind::Int => Value::Int(0),
+        FieldKind::Long => Value::Long(0),
+        FieldKind::Float => Value::Float(0.0),
+        FieldKind::Double => Value::Double(0.0),
+        FieldKind::Object => Value::Null,
     }
 }
 
@@ -194,6 +301,23 @@ fn set_field(field: places::Field, value: Code, span: Span) -> FillNode {
         Code::Node(s) => set(field, s, span),
         other => set(field, Value::from_code(other), span),
     }
+}
+
+/// What the method `toString()` of the model gives for a node or an object.
+pub(super) fn text_of(
+    p: &Program,
+    m: &mut Machine,
+    this: Value,
+    method: MethodId,
+    span: Span,
+) -> Result<Value, Trap> {
+    let mark = m.stack.mark();
+    match this {
+        Value::Node(node) => Some(node).push(&mut m.stack),
+        object => object.push(&mut m.stack),
+    }
+    p.run_method(method, m, mark, span)?;
+    Ok(Value::take_result(&mut m.stack))
 }
 
 fn invoke_static(method: MethodId, args: Vec<Code>, span: Span) -> Invoke {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Scope, calls};
-use crate::check::model::{Constant, Expr, ExprKind, Type};
+use crate::check::model::{Constant, Expr, ExprKind, MethodId, Type};
 use crate::diag::Span;
 use crate::eval::code::{Code, Eval, FromCode, Source};
 use crate::eval::machine::Machine;
@@ -98,11 +98,11 @@ impl Scope<'_> {
             ExprKind::ArrayLength(array) => self.array_length(array, e.span),
             ExprKind::Aggregate(aggregate, sequence) => self.aggregate(*aggregate, sequence, e),
             ExprKind::SelectWhere {
-                is_min,
+                selection,
                 sequence,
                 slot,
                 key,
-            } => self.select_where(*is_min, sequence, *slot, key, &e.ty),
+            } => self.select_where(*selection, sequence, *slot, key, &e.ty),
             ExprKind::Root => Code::Node(Source::code(|_, m| Ok(Some(m.graph.root())))),
             ExprKind::Comma(exprs) => self.comma(exprs),
             // `expr` has dealt with the rest.
@@ -133,11 +133,49 @@ impl Scope<'_> {
                 Ok(())
             });
         }
+        let span = part.span;
+        if let Some(own_text) = self.own_texts(&part.ty) {
+            return Box::new(move |p, m, out| {
+                let value = value.get(p, m)?;
+                let ty = value.type_in(&m.graph);
+                match ty.and_then(|ty| *own_text.get(usize::from(ty.0))?) {
+                    Some(method) => {
+                        let text = calls::text_of(p, m, value, method, span)?;
+                        m.append_text(&text, out);
+                    }
+                    None => m.append_text(&value, out),
+                }
+                Ok(())
+            });
+        }
         Box::new(move |p, m, out| {
             let value = value.get(p, m)?;
             m.append_text(&value, out);
             Ok(())
         })
+    }
+
+    /// The `toString()` of each type of the model, where values of type `ty` may have one.
+    fn own_texts(&self, ty: &Type) -> Option<Vec<Option<MethodId>>> {
+        if !matches!(ty, Type::Node(_) | Type::Instance(_) | Type::Object) {
+            return None;
+        }
+        let own = |wanted: TypeId| {
+            self.model.methods.iter().position(|method| {
+                method.name == "toString" && method.params.is_empty() && method.this == Some(wanted)
+            })
+        };
+        let inherited = |ty: TypeId| {
+            let mut lineage = std::iter::successors(Some(ty), |&t| self.model.types[t].parent);
+            lineage.find_map(own).map(|at| MethodId(at as u32))
+        };
+        let texts: Vec<_> = self
+            .model
+            .types
+            .iter()
+            .map(|(ty, _)| inherited(ty))
+            .collect();
+        texts.iter().any(Option::is_some).then_some(texts)
     }
 
     fn conditional(&self, condition: &Expr, branches: [&Expr; 2], ty: &Type) -> Code {
@@ -212,8 +250,11 @@ impl Scope<'_> {
                 )),
             }));
         }
-        let (value, test) = (self.value(operand), type_test(ty));
-        let name = type_name(ty);
+        let (value, test) = (self.value(operand), self.type_test(ty));
+        let name = match ty {
+            Type::Instance(id) => Arc::clone(&self.model.types[*id].name),
+            ty => type_name(ty),
+        };
         Code::Value(Source::code(move |p, m| {
             let value = value.get(p, m)?;
             if value.is_null() || test(&m.graph, &value) {
@@ -224,16 +265,38 @@ impl Scope<'_> {
         }))
     }
 
+    /// Whether a value that is not null is of type `ty`.
+    pub(super) fn type_test(&self, ty: &Type) -> TypeTest {
+        match ty.clone() {
+            Type::Object => Box::new(|_, v| !v.is_null()),
+            Type::String => Box::new(|_, v| v.as_text().is_some()),
+            Type::Array(_) => Box::new(|_, v| v.as_array().is_some()),
+            Type::Class(class) => Box::new(move |_, v| v.class().is_some_and(|c| c.is_a(class))),
+            Type::Node(ty) => {
+                Box::new(move |graph, v| matches!(v, Value::Node(n) if graph.is_a(*n, ty)))
+            }
+            Type::Instance(ty) => {
+                let types = self.model.types.iter();
+                let is_one: Vec<bool> = types.map(|(id, _)| self.model.is_a(id, ty)).collect();
+                Box::new(move |graph, v| {
+                    let found = v.type_in(graph);
+                    found.is_some_and(|id| is_one.get(usize::from(id.0)) == Some(&true))
+                })
+            }
+            _ => Box::new(|_, _| true),
+        }
+    }
+
     fn instance_of(&self, operand: &Expr, ty: &Type) -> Code {
-        if let Type::Node(wanted) = *ty {
-            let node = self.node(operand);
+        if let (Type::Node(wanted), Type::Node(_) | Type::Null) = (ty, &operand.ty) {
+            let (wanted, node) = (*wanted, self.node(operand));
             return Code::Boolean(Source::code(move |p, m| {
                 Ok(node
                     .get(p, m)?
                     .is_some_and(|node| m.graph.is_a(node, wanted)))
             }));
         }
-        let (value, test) = (self.value(operand), type_test(ty));
+        let (value, test) = (self.value(operand), self.type_test(ty));
         Code::Boolean(Source::code(move |p, m| {
             let value = value.get(p, m)?;
             Ok(test(&m.graph, &value))
@@ -253,21 +316,8 @@ fn constant_code(constant: &Constant) -> Code {
     }
 }
 
-type TypeTest = Box<dyn Fn(&Graph<Value>, &Value) -> bool + Send + Sync>;
-
-/// Whether a value that is not null is of type `ty`.
-fn type_test(ty: &Type) -> TypeTest {
-    match ty.clone() {
-        Type::Object => Box::new(|_, v| !v.is_null()),
-        Type::String => Box::new(|_, v| v.as_text().is_some()),
-        Type::Array(_) => Box::new(|_, v| v.as_array().is_some()),
-        Type::Class(class) => Box::new(move |_, v| v.class().is_some_and(|c| c.is_a(class))),
-        Type::Node(ty) => {
-            Box::new(move |graph, v| matches!(v, Value::Node(n) if graph.is_a(*n, ty)))
-        }
-        _ => Box::new(|_, _| true),
-    }
-}
+/// Whether a value that is not null is of some type.
+pub(super) type TypeTest = Box<dyn Fn(&Graph<Value>, &Value) -> bool + Send + Sync>;
 
 #[cold]
 fn bad_cast(machine: &Machine, value: &Value, wanted: &str, span: Span) -> Trap {

@@ -11,6 +11,7 @@ use crate::eval::access::Access;
 use crate::eval::code::{Code, Source};
 use crate::eval::library::{Getter, Setter, getter, setter};
 use crate::eval::machine::{Machine, out_of_bounds};
+use crate::eval::object::Data;
 use crate::eval::program::Program;
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
@@ -30,6 +31,8 @@ enum Target {
     Local(Local),
     Static(Local),
     Field(Source<Option<NodeId>>, Field),
+    /// A field of an object of a class of the model.
+    Slot(Source<Value>, Field),
     Element(Source<Value>, Source<i32>),
     Member(Source<Value>, Getter, Setter),
 }
@@ -55,6 +58,9 @@ impl Scope<'_> {
         match place {
             Place::Local(slot) => Target::Local(self.local(*slot)),
             Place::Static(StaticId(id)) => Target::Static(self.static_local(*id)),
+            Place::Field(object, field) if matches!(object.ty, Type::Instance(_)) => {
+                Target::Slot(self.value(object), self.field(&object.ty, *field))
+            }
             Place::Field(node, field) => {
                 Target::Field(self.node(node), self.field(&node.ty, *field))
             }
@@ -68,7 +74,7 @@ impl Scope<'_> {
     /// A field of nodes of type `owner`.
     pub(super) fn field(&self, owner: &Type, id: FieldId) -> Field {
         let fields = match owner {
-            Type::Node(ty) => self.model.types[*ty].fields.as_slice(),
+            Type::Node(ty) | Type::Instance(ty) => self.model.types[*ty].fields.as_slice(),
             _ => &[],
         };
         let name = fields
@@ -89,6 +95,10 @@ impl Scope<'_> {
             Target::Field(node, field) => Source::code(move |p, m| {
                 let node = node.get(p, m)?;
                 read_field(m, node, &field, span)
+            }),
+            Target::Slot(object, field) => Source::code(move |p, m| {
+                let object = object.get(p, m)?;
+                read_slot(&object, &field, span)
             }),
             Target::Element(array, index) => Source::code(move |p, m| {
                 let array = array.get(p, m)?;
@@ -141,6 +151,12 @@ impl Scope<'_> {
                 let node = node.get(p, m)?;
                 let new = value.get(p, m)?;
                 write_field(m, node, &field, new.clone(), span)?;
+                Ok(new)
+            }),
+            Target::Slot(object, field) => Source::code(move |p, m| {
+                let object = object.get(p, m)?;
+                let new = value.get(p, m)?;
+                write_slot(&object, &field, new.clone(), span)?;
                 Ok(new)
             }),
             Target::Element(array, index) => Source::code(move |p, m| {
@@ -267,6 +283,13 @@ fn modify<T: Access>(target: Target, old: u32, new: Source<T>, span: Span) -> So
             write_field(m, node, &field, new.clone(), span)?;
             Ok(new)
         }),
+        Target::Slot(object, field) => Source::code(move |p, m| {
+            let object = object.get(p, m)?;
+            read_slot::<T>(&object, &field, span)?.store(&mut m.stack, old);
+            let new = new.get(p, m)?;
+            write_slot(&object, &field, new.clone(), span)?;
+            Ok(new)
+        }),
         Target::Element(array, index) => Source::code(move |p, m| {
             let array = array.get(p, m)?;
             let index = index.get(p, m)?;
@@ -321,6 +344,36 @@ pub(super) fn write_field<T: Access>(
     value
         .set_field(&mut machine.graph, id, field.id)
         .map_err(|error| machine.graph_trap(&error, id, span))
+}
+
+/// Reads a field of an object of a class of the model that may be null.
+fn read_slot<T: Access>(object: &Value, field: &Field, span: Span) -> Result<T, Trap> {
+    let Some(found) = object.as_object() else {
+        return Err(null_field("read", field, span));
+    };
+    let value = match &*found.lock() {
+        Data::Instance(instance) => instance.fields.get(usize::from(field.id.0)).cloned(),
+        _ => None,
+    };
+    Ok(value.map_or_else(T::default, |value| T::unboxed(&value)))
+}
+
+/// Writes a field of an object of a class of the model that may be null.
+fn write_slot<T: Access>(object: &Value, field: &Field, value: T, span: Span) -> Result<(), Trap> {
+    let Some(found) = object.as_object() else {
+        return Err(null_field("assign", field, span));
+    };
+    let value = value.boxed();
+    // The old value is dropped after the lock is given back: it may be the last reference to a long chain.
+    let old = match &mut *found.lock() {
+        Data::Instance(instance) => instance
+            .fields
+            .get_mut(usize::from(field.id.0))
+            .map(|slot| std::mem::replace(slot, value)),
+        _ => None,
+    };
+    drop(old);
+    Ok(())
 }
 
 #[cold]

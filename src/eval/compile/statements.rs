@@ -1,7 +1,8 @@
 //! Statements without loops.
 
 use super::Scope;
-use crate::check::model::{Constant, Expr, Slot, Stmt, StmtKind};
+use super::expressions::TypeTest;
+use crate::check::model::{Constant, Expr, Slot, Stmt, StmtKind, Type};
 use crate::diag::Span;
 use crate::eval::code::{Code, Exec, Flow, Label, Source};
 use crate::eval::machine::Machine;
@@ -69,6 +70,13 @@ impl Scope<'_> {
                 finally,
             } => self.try_catch(body, catches, finally),
             StmtKind::Rule(rule) => self.rule(rule),
+            StmtKind::SuperConstructor(new) if matches!(self.local(Slot(0)), Local::Value(_)) => {
+                let fill = self.fill_instance(new, s.span);
+                Box::new(move |p, m| {
+                    let this = Value::load(&m.stack, 0);
+                    fill(p, m, this).map(|()| Flow::Next)
+                })
+            }
             StmtKind::SuperConstructor(new) => {
                 let fill = self.fill_node(new, s.span);
                 Box::new(move |p, m| match Option::<NodeId>::load(&m.stack, 0) {
@@ -188,17 +196,25 @@ impl Scope<'_> {
         })
     }
 
+    /// Whether something thrown is of type `ty`; texts that are thrown count as exceptions.
+    fn caught(&self, ty: &Type) -> TypeTest {
+        match ty {
+            Type::Class(ClassId::Exception | ClassId::Throwable) => Box::new(|_, _| true),
+            ty => self.type_test(ty),
+        }
+    }
+
     fn try_catch(
         &self,
         body: &[Stmt],
-        catches: &[(String, Slot, Vec<Stmt>)],
+        catches: &[(Vec<Type>, Slot, Vec<Stmt>)],
         finally: &[Stmt],
     ) -> Exec {
         let body = self.block(body);
         let handlers: Vec<Handler> = catches
             .iter()
-            .map(|(class, slot, handler)| Handler {
-                class: class.clone(),
+            .map(|(types, slot, handler)| Handler {
+                tests: types.iter().map(|ty| self.caught(ty)).collect(),
                 variable: self.local(*slot),
                 code: self.block(handler),
             })
@@ -243,30 +259,18 @@ fn case_value(constant: &Constant) -> Value {
 
 /// A `catch`.
 struct Handler {
-    class: String,
+    /// What it catches: anything for which one of them is true.
+    tests: Vec<TypeTest>,
     variable: Local,
     code: Exec,
-}
-
-impl Handler {
-    fn catches(&self, thrown: &Value) -> bool {
-        if matches!(self.class.as_str(), "Exception" | "Throwable") {
-            return true;
-        }
-        thrown.class().is_some_and(|class| {
-            class
-                .lineage()
-                .map(ClassId::name)
-                .any(|name| name == self.class)
-        })
-    }
 }
 
 fn handle(handlers: &[Handler], trap: Trap, p: &Program, m: &mut Machine) -> Result<Flow, Trap> {
     let Some(thrown) = trap.thrown().cloned() else {
         return Err(trap);
     };
-    let Some(handler) = handlers.iter().find(|h| h.catches(&thrown)) else {
+    let catches = |h: &&Handler| h.tests.iter().any(|test| test(&m.graph, &thrown));
+    let Some(handler) = handlers.iter().find(catches) else {
         return Err(trap);
     };
     if let Local::Value(at) = handler.variable {

@@ -141,6 +141,7 @@ pub fn method(id: M) -> Behaviour {
         M::BufferAppend | M::BuilderAppend => strings::append,
         M::BufferLength | M::BuilderLength => strings::buffer_length,
         M::ThrowableMessage => message,
+        M::ThrowableSetMessage => set_message,
         M::ThrowablePrintStackTrace => print_stack_trace,
     })
 }
@@ -172,8 +173,22 @@ fn hash_code(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
 fn message(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     Ok(match &*cx.object(args, 0)?.lock() {
         Data::Throwable(Some(text)) => Value::Text(text.clone()),
+        Data::Instance(instance) => match &instance.message {
+            Some(text) => Value::Text(text.clone()),
+            None => Value::Null,
+        },
         _ => Value::Null,
     })
+}
+
+/// The message that a class of the model gives to the exception it extends.
+fn set_message(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    if let (Data::Instance(instance), Value::Text(text)) =
+        (&mut *cx.object(args, 0)?.lock(), args.at(1))
+    {
+        instance.message = Some(text.clone());
+    }
+    Ok(Value::Null)
 }
 
 fn print_stack_trace(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {

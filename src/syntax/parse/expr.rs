@@ -172,7 +172,7 @@ impl Reader<'_> {
             Rule::step_after => return step(*operand, operator.as_str() == "++", false, span),
             Rule::with_block => ExprKind::With(operand, self.with_block(operator)),
             Rule::index => match kids(operator).next() {
-                Some(index) => ExprKind::Index(operand, Box::new(self.expr(index))),
+                Some(index) => ExprKind::Index(operand, Box::new(self.range(index))),
                 None => ExprKind::Broken,
             },
             _ => match kids(operator).next() {

@@ -170,6 +170,7 @@ impl Reader<'_> {
             modifiers,
             name: self.first_ident(&pair),
             extends: None,
+            implements: vec![],
             constants: vec![],
             members: vec![],
             span: self.span(&pair),
@@ -177,6 +178,9 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::class_parents => class.extends = kids(kid).next().map(|ty| self.type_ref(ty)),
+                Rule::implements => {
+                    class.implements = kids(kid).map(|ty| self.type_ref(ty)).collect();
+                }
                 Rule::ident if kid.as_span().start() != name_start => {
                     class.constants.push(self.ident(&kid));
                 }

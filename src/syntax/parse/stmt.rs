@@ -4,7 +4,7 @@ use super::grammar::Rule;
 use super::item::with_dims;
 use super::{Reader, kids};
 use crate::syntax::ast::{
-    Block, Class, Expr, ForHead, Ident, LocalVar, Modifiers, Param, Stmt, StmtKind, SwitchCase,
+    Block, Catch, Class, Expr, ForHead, Ident, LocalVar, Modifiers, Stmt, StmtKind, SwitchCase,
     TypeRef,
 };
 use pest::iterators::Pair;
@@ -223,7 +223,7 @@ impl Reader<'_> {
         let (mut body, mut catches, mut finally) = (Block::default(), vec![], None);
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::catch_clause => catches.extend(self.catch_clause(kid)),
+                Rule::catch_clause => catches.push(self.catch_clause(kid)),
                 Rule::finally_clause => finally = kids(kid).next().map(|block| self.block(block)),
                 _ => body = self.block(kid),
             }
@@ -235,9 +235,20 @@ impl Reader<'_> {
         }
     }
 
-    fn catch_clause(&self, pair: Pair<'_, Rule>) -> Option<(Param, Block)> {
-        let mut parts = kids(pair);
-        Some((self.param(parts.next()?), self.block(parts.next()?)))
+    fn catch_clause(&self, pair: Pair<'_, Rule>) -> Catch {
+        let mut catch = Catch {
+            types: vec![],
+            name: self.first_ident(&pair),
+            body: Block::default(),
+        };
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::type_ref => catch.types.push(self.type_ref(kid)),
+                Rule::block => catch.body = self.block(kid),
+                _ => {}
+            }
+        }
+        catch
     }
 
     /// The statements of `.( … )`.
