@@ -324,6 +324,11 @@ pub const AGGREGATES: &[Word] = &[
         "All of them as one text.",
     ),
     word(
+        "selectWhere",
+        "selectWhere((* l:Leaf *), l[rank] == 3)",
+        "The first for which the second argument is true, null if there is none.",
+    ),
+    word(
         "selectWhereMin",
         "selectWhereMin((* l:Leaf *), l[area])",
         "The one whose second argument is least.",
