@@ -84,7 +84,8 @@ pub fn check(files: &[SourceModel]) -> (Model, Diagnostics) {
 
 /// As [`check()`], and tells what the names mean. Also of models with errors.
 pub fn survey(files: &[SourceModel]) -> (Model, Diagnostics, Survey) {
-    let mut checker = Checker::new(files);
+    let classes = class::collect(files);
+    let mut checker = Checker::new(files, &classes);
     checker.survey = Some(RefCell::default());
     checker.declare();
     let model = checker.bodies();
