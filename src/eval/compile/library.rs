@@ -13,8 +13,8 @@ use crate::eval::trap::Trap;
 use crate::eval::value::Value;
 use crate::library::{ClassId, ConstructorId, FunctionId, MethodId};
 
-/// Most arguments of a library function, receiver included.
-const MAX_ARGUMENTS: usize = 8;
+/// Most arguments of a library function, receiver included: a pattern and eight values of `String.format`.
+const MAX_ARGUMENTS: usize = 9;
 
 impl Scope<'_> {
     pub(super) fn library_function(&self, id: FunctionId, args: &[Expr], e: &Expr) -> Code {
