@@ -267,7 +267,7 @@ impl Checker<'_> {
         }
         // Expressions inside the pattern are no part of what is around the query.
         let outer = std::mem::take(&mut self.cx.collector);
-        let checked = self.pattern(pattern);
+        let checked = self.query_pattern(pattern);
         self.cx.collector = outer;
         let checked = checked?;
         let Some((result, ty)) = checked.result else {

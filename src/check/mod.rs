@@ -18,6 +18,7 @@ mod construct;
 mod context;
 mod declaration;
 mod declare;
+mod edge;
 mod expr;
 mod lint;
 mod member;

@@ -293,6 +293,11 @@ impl Checker<'_> {
         }
         let fault = Diagnostic::error("unknown-module", span, format!("unknown module `{name}`"))
             .label("no such module");
+        if self.method_names.contains_key(name) {
+            return fault.hint(format!(
+                "`{name}` is a method; a condition stands in parentheses: `({name}(x))`"
+            ));
+        }
         let labels = self.cx.local_names();
         let nodes = self.types.iter().map(|(_, ty)| &*ty.name);
         self.did_you_mean(fault, name, nodes.chain(labels.iter().map(String::as_str)))

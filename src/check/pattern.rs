@@ -9,12 +9,9 @@ use super::names::Binding;
 use crate::diag::{Diagnostic, Span};
 use crate::graph::TypeId;
 use crate::graph::pattern::{
-    Candidate, Condition, EdgeKind, EdgeWay, Pattern, PatternEdge, PatternNode,
+    Candidate, Choice, Condition, EdgeKind, Pattern, PatternEdge, PatternNode, WalkStep,
 };
-use crate::syntax::ast::{self, EdgeDirection, PatternItem, PatternPart};
-
-/// Greatest number of a user's own edge kind.
-const MAX_USER_EDGE: u8 = 20;
+use crate::syntax::ast::{self, PatternItem, PatternPart};
 
 /// A checked pattern.
 pub(super) struct Checked {
@@ -26,25 +23,33 @@ pub(super) struct Checked {
 /// A pattern in the making.
 #[derive(Default)]
 pub(super) struct Builder {
-    nodes: Vec<PatternNode<Expr>>,
-    types: Vec<TypeId>,
-    edges: Vec<PatternEdge>,
+    pub(super) nodes: Vec<PatternNode<Expr>>,
+    pub(super) types: Vec<TypeId>,
+    pub(super) edges: Vec<PatternEdge>,
+    pub(super) conditions: Vec<Condition<Expr>>,
+    pub(super) choices: Vec<Choice>,
+    pub(super) walks: Vec<Vec<WalkStep>>,
+    pub(super) relations: Vec<Expr>,
     labels: HashMap<String, usize>,
     /// The pattern node that sets a slot.
-    slots: HashMap<Slot, usize>,
+    pub(super) slots: HashMap<Slot, usize>,
     first: Option<usize>,
     last: Option<usize>,
     result: Option<usize>,
+    /// Whether it is a query's: nothing is consumed.
+    is_query: bool,
     pub(super) is_wrong: bool,
 }
 
 /// Where in a pattern an item stands.
 #[derive(Clone, Copy)]
-struct At {
+pub(super) struct At {
     is_context: bool,
     in_branch: bool,
+    /// The part searched apart that it belongs to.
+    pub(super) choice: Option<usize>,
     /// The edge before the first node where none is written.
-    default: EdgeKind,
+    pub(super) default: EdgeKind,
 }
 
 /// What the next node is linked from.
@@ -54,59 +59,95 @@ struct Cursor<'i> {
     previous: Option<usize>,
     /// The edge written after it.
     edge: Option<&'i ast::EdgePattern>,
+    /// The part searched apart that has ended the row.
+    ended_by: Option<Span>,
 }
 
 impl Checker<'_> {
-    /// Checks a pattern; its labels and variables go into the innermost block.
-    pub(super) fn pattern(&mut self, pattern: &ast::Pattern) -> Option<Checked> {
-        let mut builder = Builder::default();
-        let mut conditions = vec![];
-        for part in &pattern.parts {
-            match part {
-                PatternPart::Path(items) => {
-                    let at = At {
-                        is_context: false,
-                        in_branch: false,
-                        default: EdgeKind::Successor,
-                    };
-                    self.whole_path(&mut builder, items, at, Cursor::default());
-                }
-                PatternPart::Condition(condition) => {
-                    conditions.extend(self.condition(&builder, condition));
-                }
-            }
-        }
-        let is_wrong = builder.is_wrong || conditions.len() != count_conditions(pattern);
+    /// Checks the left side of a rule; its labels and variables go into the innermost block.
+    pub(super) fn rule_pattern(&mut self, pattern: &ast::Pattern) -> Option<Checked> {
+        self.pattern(pattern, Builder::default())
+    }
+
+    /// Checks the inside of a query; its labels and variables go into the innermost block.
+    pub(super) fn query_pattern(&mut self, pattern: &ast::Pattern) -> Option<Checked> {
+        let builder = Builder {
+            is_query: true,
+            ..Builder::default()
+        };
+        self.pattern(pattern, builder)
+    }
+
+    fn pattern(&mut self, pattern: &ast::Pattern, mut builder: Builder) -> Option<Checked> {
+        let at = At {
+            is_context: false,
+            in_branch: false,
+            choice: None,
+            default: EdgeKind::Successor,
+        };
+        self.parts(&mut builder, &pattern.parts, at, Cursor::default());
         let result = builder.result.map(|at| (at, builder.types[at]));
-        let Builder {
-            nodes,
-            edges,
-            first,
-            last,
-            ..
-        } = builder;
+        let is_wrong = builder.is_wrong;
         let pattern = Pattern {
-            nodes,
-            edges,
-            conditions,
-            first,
-            last,
+            nodes: builder.nodes,
+            edges: builder.edges,
+            conditions: builder.conditions,
+            choices: builder.choices,
+            walks: builder.walks,
+            relations: builder.relations,
+            first: builder.first,
+            last: builder.last,
             span: pattern.span,
         };
         (!is_wrong).then_some(Checked { pattern, result })
     }
 
-    fn condition(&mut self, builder: &Builder, condition: &ast::Expr) -> Option<Condition<Expr>> {
-        let before = self.cx.touched.len();
-        let expr = self.value(condition)?;
-        let expr = self.boolean(expr)?;
-        let used = self.cx.touched[before..]
-            .iter()
-            .filter_map(|slot| builder.slots.get(slot));
-        Some(Condition {
+    /// Parts joined by commas, the first row of which goes on from `start`.
+    fn parts<'i>(
+        &mut self,
+        builder: &mut Builder,
+        parts: &'i [PatternPart],
+        at: At,
+        start: Cursor<'i>,
+    ) {
+        let mut start = Some(start);
+        for part in parts {
+            match part {
+                PatternPart::Path(items) => {
+                    let cursor = start.take().unwrap_or_default();
+                    self.whole_path(builder, items, at, cursor);
+                }
+                PatternPart::Condition(written) => {
+                    let before = self.cx.touched.len();
+                    let checked = self.value(written).and_then(|value| self.boolean(value));
+                    match checked {
+                        Some(expr) => self.pattern_condition(builder, expr, before, at.choice),
+                        None => builder.is_wrong = true,
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds a condition; the locals it reads (those touched since there were `before`) tell which nodes it needs.
+    pub(super) fn pattern_condition(
+        &mut self,
+        builder: &mut Builder,
+        expr: Expr,
+        before: usize,
+        choice: Option<usize>,
+    ) {
+        let read = self.cx.touched[before..].iter();
+        let mut needs: Vec<usize> = read
+            .filter_map(|slot| builder.slots.get(slot).copied())
+            .collect();
+        needs.sort_unstable();
+        needs.dedup();
+        builder.conditions.push(Condition {
             expr,
-            needs: used.copied().max(),
-        })
+            needs,
+            choice,
+        });
     }
 
     /// Adds a row of nodes that ends here: at the end of a part or of a branch.
@@ -118,7 +159,9 @@ impl Checker<'_> {
         mut cursor: Cursor<'i>,
     ) {
         self.path(builder, items, at, &mut cursor);
-        if let Some(edge) = cursor.edge {
+        if let Some(edge) = cursor.edge
+            && !builder.is_wrong
+        {
             self.report_loose_edge(builder, edge.span);
         }
     }
@@ -132,47 +175,129 @@ impl Checker<'_> {
         cursor: &mut Cursor<'i>,
     ) {
         for item in items {
+            if let Some(end) = cursor.ended_by {
+                self.report_row_after_choice(builder, end);
+                return;
+            }
             match item {
                 PatternItem::Node(node) => {
                     self.linked_node(builder, node, at, cursor);
                     at.default = EdgeKind::Successor;
                 }
-                PatternItem::Edge(written) => {
-                    let is_loose = cursor.previous.is_none() && !builder.is_wrong;
-                    if is_loose || cursor.edge.is_some() {
-                        self.report_loose_edge(builder, written.span);
-                    }
-                    cursor.edge = Some(written);
-                }
-                PatternItem::Branch(items) => {
-                    if cursor.previous.is_none() && !builder.is_wrong {
-                        self.report_loose_branch(builder, first_span(items));
-                    }
+                PatternItem::Edge(written) => self.loose_edge(builder, written, at, cursor),
+                PatternItem::Branch(items) => self.branch(builder, items, at, cursor),
+                PatternItem::Context(items) => {
                     let inner = At {
-                        in_branch: true,
-                        default: EdgeKind::Branch,
+                        is_context: true,
                         ..at
                     };
-                    let start = Cursor {
-                        previous: cursor.previous,
-                        edge: cursor.edge.take(),
-                    };
-                    self.whole_path(builder, items, inner, start);
-                }
-                PatternItem::Context(items) => {
-                    self.path(
-                        builder,
-                        items,
-                        At {
-                            is_context: true,
-                            ..at
-                        },
-                        cursor,
-                    );
+                    self.path(builder, items, inner, cursor);
                     at.default = EdgeKind::Successor;
+                }
+                PatternItem::Choice(choice, parts, span) => {
+                    let start = Cursor {
+                        edge: cursor.edge.take(),
+                        ..*cursor
+                    };
+                    self.choice(builder, (*choice, parts, *span), at, start);
+                    cursor.ended_by = Some(*span);
                 }
             }
         }
+    }
+
+    /// An edge, whose right node follows. Between two edges in a row stands any node, which has no name.
+    fn loose_edge<'i>(
+        &mut self,
+        builder: &mut Builder,
+        written: &'i ast::EdgePattern,
+        at: At,
+        cursor: &mut Cursor<'i>,
+    ) {
+        match (cursor.previous, cursor.edge.take()) {
+            (None, _) if !builder.is_wrong => self.report_loose_edge(builder, written.span),
+            (Some(from), Some(edge)) if builder.is_query || at.is_context => {
+                let between = At {
+                    is_context: true,
+                    ..at
+                };
+                let node = (Candidate::Any, self.node);
+                let index = builder.add_node(node, None, between, written.span);
+                self.pattern_edge(builder, (from, index), Some(edge), at);
+                cursor.previous = Some(index);
+            }
+            (_, Some(_)) => self.report_loose_edge(builder, written.span),
+            (_, None) => {}
+        }
+        cursor.edge = Some(written);
+    }
+
+    fn report_row_after_choice(&mut self, builder: &mut Builder, span: Span) {
+        builder.is_wrong = true;
+        let message = "a part in `(: … )`, `(& … )` or `(? … )` ends its row";
+        let fault = Diagnostic::error("misplaced-choice", span, message);
+        self.report(fault.hint("write what follows as a part of its own, behind a comma"));
+    }
+
+    fn report_misplaced_choice(&mut self, builder: &mut Builder, is_nested: bool, span: Span) {
+        builder.is_wrong = true;
+        let message = if is_nested {
+            "a part in `(: … )`, `(& … )` or `(? … )` cannot hold another one"
+        } else {
+            "what may be missing cannot be replaced"
+        };
+        let hint = if is_nested {
+            "put the two side by side: `A (: > B), (: +> C)`"
+        } else {
+            "put it into a context: `A (* (? > B) *)`"
+        };
+        self.report(Diagnostic::error("misplaced-choice", span, message).hint(hint));
+    }
+
+    fn branch<'i>(
+        &mut self,
+        builder: &mut Builder,
+        items: &'i [PatternItem],
+        at: At,
+        cursor: &mut Cursor<'i>,
+    ) {
+        if cursor.previous.is_none() && !builder.is_wrong {
+            self.report_loose_branch(builder, first_span(items));
+        }
+        let inner = At {
+            in_branch: true,
+            default: EdgeKind::Branch,
+            ..at
+        };
+        let start = Cursor {
+            edge: cursor.edge.take(),
+            ..*cursor
+        };
+        self.whole_path(builder, items, inner, start);
+    }
+
+    /// Adds a part that is searched apart.
+    fn choice<'i>(
+        &mut self,
+        builder: &mut Builder,
+        (choice, parts, span): (ast::Choice, &'i [PatternPart], Span),
+        at: At,
+        start: Cursor<'i>,
+    ) {
+        let is_consuming = !builder.is_query && !at.is_context;
+        if at.choice.is_some() || choice == ast::Choice::Optional && is_consuming {
+            self.report_misplaced_choice(builder, at.choice.is_some(), span);
+        }
+        builder.choices.push(match choice {
+            ast::Choice::First => Choice::First,
+            ast::Choice::Late => Choice::Late,
+            ast::Choice::Optional => Choice::Optional,
+        });
+        let at = At {
+            choice: Some(builder.choices.len() - 1),
+            ..at
+        };
+        self.parts(builder, parts, at, start);
     }
 
     /// Adds a node and the edge from the one before it.
@@ -189,97 +314,11 @@ impl Checker<'_> {
             return;
         };
         match (cursor.previous, cursor.edge.take()) {
-            (Some(from), edge) => self.pattern_edge(builder, from, index, edge, at.default),
-            (None, Some(edge)) => self.report_loose_edge(builder, edge.span),
-            (None, None) => {}
+            (Some(from), edge) => self.pattern_edge(builder, (from, index), edge, at),
+            (None, Some(edge)) if !builder.is_wrong => self.report_loose_edge(builder, edge.span),
+            (None, _) => {}
         }
         cursor.previous = Some(index);
-    }
-
-    fn report_loose_branch(&mut self, builder: &mut Builder, span: Span) {
-        builder.is_wrong = true;
-        let fault = Diagnostic::error("loose-branch", span, "a branch needs a node before it");
-        self.report(fault.hint("write `. [ … ]` for a branch of any node"));
-    }
-
-    fn report_loose_edge(&mut self, builder: &mut Builder, span: Span) {
-        builder.is_wrong = true;
-        let fault = Diagnostic::error("loose-edge", span, "an edge needs a node on either side");
-        self.report(fault.hint("write `.` for any node"));
-    }
-
-    fn pattern_edge(
-        &mut self,
-        builder: &mut Builder,
-        from: usize,
-        to: usize,
-        edge: Option<&ast::EdgePattern>,
-        default: EdgeKind,
-    ) {
-        let Some(edge) = edge else {
-            let repeat = (1, Some(1));
-            builder.edges.push(PatternEdge {
-                from,
-                to,
-                kind: default,
-                way: EdgeWay::Forward,
-                repeat,
-            });
-            return;
-        };
-        let Some(kind) = self.edge_kind(edge) else {
-            builder.is_wrong = true;
-            return;
-        };
-        let repeat = edge.repeat.unwrap_or((1, Some(1)));
-        if repeat.1.is_some_and(|most| most < repeat.0) {
-            self.report(Diagnostic::error(
-                "bad-closure",
-                edge.span,
-                "the greatest number is below the least",
-            ));
-            builder.is_wrong = true;
-        }
-        builder.edges.push(PatternEdge {
-            from,
-            to,
-            kind,
-            way: edge_way(edge.direction),
-            repeat,
-        });
-    }
-
-    /// The kind of an edge; reported if it is not known.
-    pub(super) fn edge_kind(&mut self, edge: &ast::EdgePattern) -> Option<EdgeKind> {
-        Some(match &edge.kind {
-            ast::EdgeKind::Any => EdgeKind::Any,
-            ast::EdgeKind::Successor => EdgeKind::Successor,
-            ast::EdgeKind::Branch => EdgeKind::Branch,
-            ast::EdgeKind::Refinement => EdgeKind::Refinement,
-            ast::EdgeKind::Named(name) => match name.as_str() {
-                "ancestor" => EdgeKind::Ancestor,
-                "minDescendants" => EdgeKind::MinDescendants,
-                "descendants" => EdgeKind::Descendants,
-                "successor" => EdgeKind::Successor,
-                "branch" => EdgeKind::Branch,
-                _ => match name
-                    .strip_prefix("EDGE_")
-                    .and_then(|n| n.parse::<u8>().ok())
-                {
-                    Some(bit) if bit <= MAX_USER_EDGE => EdgeKind::User(bit),
-                    _ => {
-                        let fault = Diagnostic::error(
-                            "unknown-edge",
-                            edge.span,
-                            format!("unknown edge `{name}`"),
-                        );
-                        let hint = "there are `ancestor`, `minDescendants`, `descendants` and `EDGE_0` … `EDGE_20`";
-                        self.report(fault.hint(hint));
-                        return None;
-                    }
-                },
-            },
-        })
     }
 
     fn pattern_node(
@@ -294,14 +333,7 @@ impl Checker<'_> {
             Some(label) => Some(self.pattern_label(builder, label, ty, index)?),
             None => None,
         };
-        builder.nodes.push(PatternNode {
-            what,
-            slot: slot.map(|s| s.0),
-            args: vec![],
-            is_context: at.is_context,
-            span: node.span,
-        });
-        builder.types.push(ty);
+        builder.add_node((what, ty), slot, at, node.span);
         if !at.is_context {
             builder.first.get_or_insert(index);
             if !at.in_branch {
@@ -427,21 +459,31 @@ impl Checker<'_> {
     }
 }
 
-fn count_conditions(pattern: &ast::Pattern) -> usize {
-    pattern
-        .parts
-        .iter()
-        .filter(|part| matches!(part, PatternPart::Condition(_)))
-        .count()
-}
+impl Builder {
+    /// Adds a node of this type; returns its index.
+    fn add_node(
+        &mut self,
+        (what, ty): (Candidate<Expr>, TypeId),
+        slot: Option<Slot>,
+        at: At,
+        span: Span,
+    ) -> usize {
+        self.nodes.push(PatternNode {
+            what,
+            slot: slot.map(|s| s.0),
+            args: vec![],
+            is_context: at.is_context,
+            choice: at.choice,
+            span,
+        });
+        self.types.push(ty);
+        self.nodes.len() - 1
+    }
 
-/// The way of an edge.
-pub(super) fn edge_way(direction: EdgeDirection) -> EdgeWay {
-    match direction {
-        EdgeDirection::Forward => EdgeWay::Forward,
-        EdgeDirection::Backward => EdgeWay::Backward,
-        EdgeDirection::Both => EdgeWay::Both,
-        EdgeDirection::Undirected => EdgeWay::Undirected,
+    /// Whether a pattern node may be missing in a match.
+    pub(super) fn is_optional(&self, node: usize) -> bool {
+        let choice = self.nodes.get(node).and_then(|node| node.choice);
+        choice.is_some_and(|choice| self.choices[choice] == Choice::Optional)
     }
 }
 
@@ -451,6 +493,7 @@ fn first_span(items: &[PatternItem]) -> Span {
         Some(PatternItem::Node(node)) => node.span,
         Some(PatternItem::Edge(edge)) => edge.span,
         Some(PatternItem::Branch(items) | PatternItem::Context(items)) => first_span(items),
+        Some(PatternItem::Choice(_, _, span)) => *span,
         None => Span::default(),
     }
 }

@@ -85,6 +85,12 @@ impl Checker<'_> {
             && name != "^"
             && self.lookup(name, arg.span).is_none()
         {
+            if builder.is_optional(index) {
+                let message = "a node that may be missing cannot set a variable by its parameter";
+                let fault = Diagnostic::error("misplaced-choice", arg.span, message);
+                self.report(fault.hint("give the node a label and ask whether that is null"));
+                return None;
+            }
             let slot = self.bind(builder, name, field_ty, index, arg.span);
             return Some(PatternArg::Bind(field, slot.0));
         }

@@ -2,9 +2,9 @@
 
 use super::Checker;
 use super::context::Local;
+use super::edge::edge_way;
 use super::model::{Expr, Production, Type};
 use super::names::Binding;
-use super::pattern::edge_way;
 use crate::diag::{Diagnostic, Span};
 use crate::graph::pattern::EdgeKind;
 use crate::syntax::ast::{self, ForHead, RhsItem};

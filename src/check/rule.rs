@@ -25,7 +25,7 @@ impl Checker<'_> {
 
     fn rule(&mut self, rule: &ast::Rule) -> Option<Stmt> {
         self.cx.open();
-        let pattern = self.pattern(&rule.lhs);
+        let pattern = self.rule_pattern(&rule.lhs);
         let arrow = match rule.arrow {
             ast::Arrow::Lindenmayer => Arrow::Lindenmayer,
             ast::Arrow::Spo => Arrow::Spo,

@@ -32,7 +32,9 @@ impl EdgeBits {
             EdgeKind::Any
             | EdgeKind::Ancestor
             | EdgeKind::MinDescendants
-            | EdgeKind::Descendants => Self::ALL,
+            | EdgeKind::Descendants
+            | EdgeKind::Walk(_)
+            | EdgeKind::Relation(_) => Self::ALL,
         }
     }
 

@@ -12,6 +12,12 @@ pub struct Pattern<E> {
     pub edges: Vec<PatternEdge>,
     /// Conditions, in textual order.
     pub conditions: Vec<Condition<E>>,
+    /// Parts that are searched apart from the rest, in textual order.
+    pub choices: Vec<Choice>,
+    /// What [`EdgeKind::Walk`] stands for.
+    pub walks: Vec<Vec<WalkStep>>,
+    /// What [`EdgeKind::Relation`] stands for: gives the node that is related to the left one, which stands in its slot.
+    pub relations: Vec<E>,
     /// Leftmost node that is not context (`in` of the embedding), if any.
     pub first: Option<usize>,
     /// Rightmost node that is not context and in no branch (`out` of the embedding), if any.
@@ -31,6 +37,8 @@ pub struct PatternNode<E> {
     pub args: Vec<PatternArg<E>>,
     /// Whether it stands in `(* … *)`: matched but never consumed.
     pub is_context: bool,
+    /// The part searched apart that it belongs to, by index.
+    pub choice: Option<usize>,
     /// Its place.
     pub span: Span,
 }
@@ -70,8 +78,33 @@ pub struct PatternEdge {
     pub kind: EdgeKind,
     /// Which way.
     pub way: EdgeWay,
-    /// Closure: least and greatest number of edges; (1, Some(1)) for a plain edge.
+    /// Closure: least and greatest number of edges; (1, Some(1)) for a plain edge. Of a walk only whether its least
+    /// number is 0.
     pub repeat: (u32, Option<u32>),
+    /// The part searched apart that it belongs to, by index.
+    pub choice: Option<usize>,
+}
+
+/// How a part of a pattern is searched that is set apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// `(: … )`: only its first match counts.
+    First,
+    /// `(& … )`: after all that is not set apart.
+    Late,
+    /// `(? … )`: without a match its labels are null.
+    Optional,
+}
+
+/// A part of a way that is more than one closure of one edge.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum WalkStep {
+    /// One edge.
+    Edge(EdgeKind, EdgeWay),
+    /// A node of this type on the way.
+    Type(TypeId),
+    /// All of this, between so many and so many times.
+    Repeat(Vec<WalkStep>, u32, Option<u32>),
 }
 
 /// Kinds of edges that can be asked for or made.
@@ -93,6 +126,10 @@ pub enum EdgeKind {
     Descendants,
     /// A user's own edge bit (0..=20).
     User(u8),
+    /// A way of several edges, by index into the pattern's walks (patterns only).
+    Walk(u16),
+    /// To the node that a method gives, by index into the pattern's relations (patterns only).
+    Relation(u16),
 }
 
 /// Which way an edge runs, seen from the left node.
@@ -113,7 +150,9 @@ pub enum EdgeWay {
 pub struct Condition<E> {
     /// A boolean expression.
     pub expr: E,
-    /// The last pattern node (by index) whose label or parameters it uses; `None` means it uses none and is evaluated once
-    /// per search, not per match.
-    pub needs: Option<usize>,
+    /// The pattern nodes (by index) whose label or parameters it uses; with none it is evaluated once per search, not per
+    /// match.
+    pub needs: Vec<usize>,
+    /// The part searched apart that it belongs to, by index.
+    pub choice: Option<usize>,
 }

@@ -9,6 +9,7 @@
 //! `println`, of random numbers, of queries in the next step.
 
 mod apply;
+mod automaton;
 mod batches;
 mod deferred;
 mod path;
@@ -23,4 +24,4 @@ pub use deferred::{Assignment, DeferredValue};
 pub use plan::Plan;
 pub use producer::Instantiated;
 pub use queue::{Derivation, Mode, Queue, RewriteError};
-pub use search::{Flow, Found, MatchEnv, ScratchPool, search};
+pub use search::{Flow, Found, Match, MatchEnv, ScratchPool, search};

@@ -1,6 +1,7 @@
 //! In which order the nodes of a pattern are looked for.
 
-use crate::graph::pattern::{Candidate, Pattern};
+use super::automaton::Automaton;
+use crate::graph::pattern::{Candidate, EdgeKind, Pattern};
 use crate::graph::{Graph, Payload, TypeId};
 
 /// A pattern made ready for searching; made once per rule or query.
@@ -17,6 +18,8 @@ pub struct Plan {
     pub(super) types: Vec<Option<TypeId>>,
     /// How each node is found, by pattern node: by which edge, and whether against it. `None` if it is a start.
     pub(super) via: Vec<Option<Via>>,
+    /// Ways of several edges: as written, and from their ends.
+    pub(super) automata: Vec<[Automaton; 2]>,
 }
 
 /// How a pattern node is found from another one.
@@ -39,6 +42,12 @@ pub(super) enum Step {
     Check(usize),
     /// Evaluates a condition.
     Condition(usize),
+    /// Finds the node that a method gives for one found before.
+    Relate(usize),
+    /// Begins a part that is searched apart, and which ends at the step `end`.
+    Open { choice: usize, end: usize },
+    /// Ends such a part: it is found.
+    Close(usize),
 }
 
 impl Plan {
@@ -47,33 +56,21 @@ impl Plan {
     /// Connected parts of the pattern are searched one inside the other: first those with a node that is known
     /// beforehand, then the others from the last to the first. Within a part the search begins at the known nodes, else
     /// at the first, and follows the edges as they are written. A condition is evaluated as soon as the nodes up to the
-    /// last one it needs are found.
+    /// last one it needs are found. What is set apart by `(: … )` and its kin comes last, in textual order.
     pub fn new<E>(pattern: &Pattern<E>) -> Self {
         let meant = meant_nodes(pattern);
         let mut planner = Planner {
             pattern,
             meant: &meant,
+            choice: None,
             is_bound: vec![false; pattern.nodes.len()],
             is_edge_done: vec![false; pattern.edges.len()],
             is_condition_done: vec![false; pattern.conditions.len()],
             steps: vec![],
         };
-        let is_known = |&node: &usize| {
-            matches!(
-                pattern.nodes[node].what,
-                Candidate::Value(_) | Candidate::Root
-            )
-        };
-        let own = |&node: &usize| meant[node] == node;
-        for node in (0..pattern.nodes.len()).filter(own).filter(is_known) {
-            planner.bind(node, Step::Start(node));
-        }
-        planner.follow_edges();
-        for start in planner.starts_of_parts() {
-            if !planner.is_bound[start] {
-                planner.bind(start, Step::Start(start));
-                planner.follow_edges();
-            }
+        planner.plan_part();
+        for choice in 0..pattern.choices.len() {
+            planner.plan_choice(choice);
         }
         let steps = planner.steps;
         let via = vias(pattern, &meant, &steps);
@@ -83,22 +80,20 @@ impl Plan {
         };
         let types = meant.iter().map(type_of).collect();
         let once = (0..pattern.conditions.len())
-            .filter(|&i| pattern.conditions[i].needs.is_none())
+            .filter(|&i| pattern.conditions[i].needs.is_empty())
             .collect();
-        let zero = pattern.edges.iter().filter(|e| e.repeat.0 == 0);
-        let may_coincide = zero.map(|e| (meant[e.from], meant[e.to])).collect();
+        let both_ways = |steps| [false, true].map(|back| Automaton::new(steps, back));
         Self {
             steps,
+            may_coincide: coinciding(pattern, &meant),
             meant,
-            may_coincide,
             once,
             types,
             via,
+            automata: pattern.walks.iter().map(|steps| both_ways(steps)).collect(),
         }
     }
-}
 
-impl Plan {
     /// Whether a type that the pattern needs has no node at all, so that nothing need be tried. Conditions of partial
     /// matches may draw random numbers; where there are some, the search takes its course.
     pub(super) fn has_no_match<E, O: Payload>(
@@ -106,9 +101,28 @@ impl Plan {
         pattern: &Pattern<E>,
         graph: &Graph<O>,
     ) -> bool {
-        pattern.conditions.len() == self.once.len()
-            && self.types.iter().flatten().any(|&ty| graph.count(ty) == 0)
+        let is_missing = |node: usize| {
+            let ty = self.types[node].filter(|_| pattern.nodes[self.meant[node]].choice.is_none());
+            ty.is_some_and(|ty| graph.count(ty) == 0)
+        };
+        pattern.conditions.len() == self.once.len() && (0..self.types.len()).any(is_missing)
     }
+}
+
+/// Pairs of nodes that may be the same one: those that closures join which may have no edge.
+fn coinciding<E>(pattern: &Pattern<E>, meant: &[usize]) -> Vec<(usize, usize)> {
+    let n = pattern.nodes.len();
+    let mut group: Vec<usize> = (0..n).collect();
+    let zero = || pattern.edges.iter().filter(|edge| edge.repeat.0 == 0);
+    for _ in zero() {
+        for edge in zero() {
+            let (a, b) = (meant[edge.from], meant[edge.to]);
+            let least = group[a].min(group[b]);
+            (group[a], group[b]) = (least, least);
+        }
+    }
+    let pairs = (0..n).flat_map(|a| (a + 1..n).map(move |b| (a, b)));
+    pairs.filter(|&(a, b)| group[a] == group[b]).collect()
 }
 
 /// How each pattern node is found, from the steps that find it.
@@ -149,6 +163,8 @@ fn meant_nodes<E>(pattern: &Pattern<E>) -> Vec<usize> {
 struct Planner<'a, E> {
     pattern: &'a Pattern<E>,
     meant: &'a [usize],
+    /// The part searched apart that is being planned.
+    choice: Option<usize>,
     is_bound: Vec<bool>,
     is_edge_done: Vec<bool>,
     is_condition_done: Vec<bool>,
@@ -156,12 +172,54 @@ struct Planner<'a, E> {
 }
 
 impl<E> Planner<'_, E> {
-    /// First nodes of the connected parts, last part first.
-    fn starts_of_parts(&self) -> Vec<usize> {
+    /// Whether the pattern node is one to be found in the part at hand.
+    fn is_own(&self, node: usize) -> bool {
+        self.meant[node] == node && self.pattern.nodes[node].choice == self.choice
+    }
+
+    fn plan_choice(&mut self, choice: usize) {
+        self.choice = Some(choice);
+        let begin = self.steps.len();
+        self.steps.push(Step::Open { choice, end: 0 });
+        self.plan_part();
+        let end = self.steps.len();
+        self.steps.push(Step::Close(choice));
+        self.steps[begin] = Step::Open { choice, end };
+        self.choice = None;
+        self.follow_edges();
+        self.add_conditions();
+    }
+
+    fn plan_part(&mut self) {
+        let is_known = |what: &Candidate<E>| matches!(what, Candidate::Value(_) | Candidate::Root);
+        for node in 0..self.pattern.nodes.len() {
+            if self.is_own(node) && is_known(&self.pattern.nodes[node].what) {
+                self.bind(node, Step::Start(node));
+            }
+        }
+        self.follow_edges();
+        for start in self.starts() {
+            if !self.is_bound[start] {
+                self.bind(start, Step::Start(start));
+                self.follow_edges();
+            }
+        }
+        self.follow_edges();
+        self.add_conditions();
+    }
+
+    /// Where to begin: at the first nodes of the connected parts, last part first. To what a method leads, it is best led;
+    /// such nodes come after the others.
+    fn starts(&self) -> Vec<usize> {
         let n = self.pattern.nodes.len();
         let mut part: Vec<usize> = (0..n).map(|i| self.meant[i]).collect();
+        let mut is_led = vec![false; n];
         for _ in 0..n {
-            for edge in &self.pattern.edges {
+            let edges = self.pattern.edges.iter();
+            for edge in edges.filter(|edge| edge.choice == self.choice) {
+                if let EdgeKind::Relation(_) = edge.kind {
+                    is_led[self.meant[edge.to]] = true;
+                }
                 let least = part[edge.from].min(part[edge.to]);
                 (part[edge.from], part[edge.to]) = (least, least);
             }
@@ -170,7 +228,11 @@ impl<E> Planner<'_, E> {
                 part[self.meant[i]] = part[i];
             }
         }
-        (0..n).rev().filter(|&i| part[i] == i).collect()
+        let own = || (0..n).filter(|&i| self.is_own(i));
+        let mut starts: Vec<usize> = own().filter(|&i| !is_led[i]).collect();
+        starts.sort_by_key(|&i| (std::cmp::Reverse(part[i]), i));
+        starts.extend(own().filter(|&i| is_led[i]));
+        starts
     }
 
     fn follow_edges(&mut self) {
@@ -179,16 +241,21 @@ impl<E> Planner<'_, E> {
             let PatternEnds { from, to } = self.ends(edge);
             if self.is_bound[from] && self.is_bound[to] {
                 self.steps.push(Step::Check(edge));
-            } else {
-                let new = if is_reversed { from } else { to };
-                self.bind(new, Step::Follow { edge, is_reversed });
+                continue;
             }
+            let step = match self.pattern.edges[edge].kind {
+                EdgeKind::Relation(_) => Step::Relate(edge),
+                _ => Step::Follow { edge, is_reversed },
+            };
+            self.bind(if is_reversed { from } else { to }, step);
         }
     }
 
     /// The first edge in the text that has an end found already; edges with both ends found come first.
     fn next_edge(&self) -> Option<(usize, bool)> {
-        let open = || (0..self.pattern.edges.len()).filter(|&e| !self.is_edge_done[e]);
+        let is_open =
+            |&e: &usize| !self.is_edge_done[e] && self.pattern.edges[e].choice == self.choice;
+        let open = || (0..self.pattern.edges.len()).filter(is_open);
         let both = |&e: &usize| {
             let PatternEnds { from, to } = self.ends(e);
             self.is_bound[from] && self.is_bound[to]
@@ -198,10 +265,11 @@ impl<E> Planner<'_, E> {
         }
         open().find_map(|e| {
             let PatternEnds { from, to } = self.ends(e);
+            let is_one_way = matches!(self.pattern.edges[e].kind, EdgeKind::Relation(_));
             match (self.is_bound[from], self.is_bound[to]) {
-                (true, false) => Some((e, false)),
-                (false, true) => Some((e, true)),
-                (true, true) | (false, false) => None,
+                (true, false) if self.is_own(to) => Some((e, false)),
+                (false, true) if self.is_own(from) && !is_one_way => Some((e, true)),
+                _ => None,
             }
         })
     }
@@ -217,13 +285,20 @@ impl<E> Planner<'_, E> {
     fn bind(&mut self, node: usize, step: Step) {
         self.is_bound[node] = true;
         self.steps.push(step);
-        let meant = self.meant;
-        let is_bound = |i: usize, bound: &[bool]| bound[meant[i]];
+        self.add_conditions();
+    }
+
+    /// Adds the conditions that can be evaluated by now.
+    fn add_conditions(&mut self) {
         for (i, condition) in self.pattern.conditions.iter().enumerate() {
-            let Some(last) = condition.needs else {
+            let Some(&last) = condition.needs.iter().max() else {
                 continue;
             };
-            if !self.is_condition_done[i] && (0..=last).all(|n| is_bound(n, &self.is_bound)) {
+            let is_before = |node: usize| node <= last && self.pattern.nodes[node].choice.is_none();
+            let before = (0..self.meant.len()).filter(|&node| is_before(self.meant[node]));
+            let mut needed = before.chain(condition.needs.iter().copied());
+            let is_ready = needed.all(|node| self.is_bound[self.meant[node]]);
+            if is_ready && condition.choice == self.choice && !self.is_condition_done[i] {
                 self.is_condition_done[i] = true;
                 self.steps.push(Step::Condition(i));
             }

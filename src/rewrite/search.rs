@@ -2,7 +2,7 @@
 
 use super::path::{Open, Path, Visit, Visited, is_single_edge};
 use super::plan::{Plan, Step};
-use crate::graph::pattern::{Candidate, Pattern, PatternArg};
+use crate::graph::pattern::{Candidate, Choice, EdgeKind, Pattern, PatternArg};
 use crate::graph::{FieldId, Graph, GraphError, NodeId, Payload, TypeId};
 
 /// Whether a search goes on.
@@ -33,8 +33,8 @@ pub trait MatchEnv<E> {
     /// Buffers that searches share.
     fn scratch(&mut self) -> &mut ScratchPool;
 
-    /// Stores a matched node in a local variable.
-    fn bind_node(&mut self, slot: u16, node: NodeId);
+    /// Stores a matched node in a local variable; none where a part of the pattern that may be missing is.
+    fn bind_node(&mut self, slot: u16, node: Option<NodeId>);
 
     /// Stores a field of a matched node in a local variable.
     fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), Self::Error>;
@@ -54,8 +54,30 @@ pub trait MatchEnv<E> {
     fn node_value(&mut self, value: &E) -> Result<Option<NodeId>, Self::Error>;
 }
 
-/// What is done with a match: gets the graph's node for each pattern node.
-pub type Found<'f, M, E> = dyn FnMut(&mut M, &[NodeId]) -> Result<Flow, E> + 'f;
+/// What is done with a match.
+pub type Found<'f, M, E> = dyn FnMut(&mut M, &Match<'_>) -> Result<Flow, E> + 'f;
+
+/// A match of a pattern.
+#[derive(Clone, Copy, Debug)]
+pub struct Match<'m> {
+    nodes: &'m [NodeId],
+    is_bound: &'m [bool],
+    meant: &'m [usize],
+}
+
+impl<'m> Match<'m> {
+    /// The graph's node for each pattern node; where an optional part is missing, some node to which no edge of the pattern
+    /// leads.
+    pub fn nodes(&self) -> &'m [NodeId] {
+        self.nodes
+    }
+
+    /// The graph's node for a pattern node; none where an optional part is missing.
+    pub fn node(&self, index: usize) -> Option<NodeId> {
+        let is_bound = *self.is_bound.get(*self.meant.get(index)?)?;
+        self.nodes.get(index).copied().filter(|_| is_bound)
+    }
+}
 
 /// Buffers for searches, kept from one search to the next. Searches inside searches take one each.
 #[derive(Debug, Default)]
@@ -69,6 +91,8 @@ struct Scratch {
     nodes: Vec<NodeId>,
     /// Which pattern nodes have found anything.
     is_bound: Vec<bool>,
+    /// Which parts searched apart have found anything.
+    is_met: Vec<bool>,
     /// Candidates of all steps that are under way, those of the innermost on top.
     open: Vec<Open>,
 }
@@ -101,6 +125,8 @@ pub fn search<E, M: MatchEnv<E>>(
         .resize(pattern.nodes.len(), env.graph().root());
     scratch.is_bound.clear();
     scratch.is_bound.resize(pattern.nodes.len(), false);
+    scratch.is_met.clear();
+    scratch.is_met.resize(pattern.choices.len(), false);
     scratch.open.clear();
     let mut search = Search {
         pattern,
@@ -119,6 +145,17 @@ pub fn search<E, M: MatchEnv<E>>(
 
 /// So many visits are spent at once: the budget is looked at often enough, and the inner loop only counts.
 const BATCH: u32 = 1 << 10;
+
+/// What comes after a candidate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    /// The next one.
+    Next,
+    /// None of the part searched apart that is under way: its first match is found.
+    Leave,
+    /// None at all.
+    Stop,
+}
 
 struct Search<'a, E, M: MatchEnv<E>> {
     pattern: &'a Pattern<E>,
@@ -144,32 +181,96 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         self.env.spend(std::mem::take(&mut self.n_visits))
     }
 
-    fn step(&mut self, at: usize) -> Result<Flow, M::Error> {
+    fn step(&mut self, at: usize) -> Result<Turn, M::Error> {
         let Some(&step) = self.plan.steps.get(at) else {
-            return (self.found)(self.env, &self.scratch.nodes);
+            return self.found();
         };
         match step {
             Step::Start(node) => self.start(node, at),
             Step::Follow { edge, is_reversed } => self.follow(edge, is_reversed, at),
             Step::Check(edge) => {
-                if self.check(edge)? {
-                    self.step(at + 1)
-                } else {
-                    Ok(Flow::Continue)
-                }
+                let holds = self.check(edge)?;
+                self.step_if(holds, at)
             }
             Step::Condition(i) => {
                 let holds = self.env.condition(&self.pattern.conditions[i].expr)?;
-                if holds {
-                    self.step(at + 1)
-                } else {
-                    Ok(Flow::Continue)
+                self.step_if(holds, at)
+            }
+            Step::Relate(edge) => match self.related(edge)? {
+                Some(found) => {
+                    self.try_node(self.plan.meant[self.pattern.edges[edge].to], found, at)
                 }
+                None => Ok(Turn::Next),
+            },
+            Step::Open { choice, end } => self.choice(choice, end, at),
+            Step::Close(choice) => {
+                self.scratch.is_met[choice] = true;
+                let turn = self.step(at + 1)?;
+                let is_first = self.pattern.choices[choice] == Choice::First;
+                Ok(if is_first && turn == Turn::Next {
+                    Turn::Leave
+                } else {
+                    turn
+                })
             }
         }
     }
 
-    fn start(&mut self, node: usize, at: usize) -> Result<Flow, M::Error> {
+    fn step_if(&mut self, holds: bool, at: usize) -> Result<Turn, M::Error> {
+        if holds {
+            self.step(at + 1)
+        } else {
+            Ok(Turn::Next)
+        }
+    }
+
+    fn found(&mut self) -> Result<Turn, M::Error> {
+        let found = Match {
+            nodes: &self.scratch.nodes,
+            is_bound: &self.scratch.is_bound,
+            meant: &self.plan.meant,
+        };
+        Ok(match (self.found)(self.env, &found)? {
+            Flow::Continue => Turn::Next,
+            Flow::Stop => Turn::Stop,
+        })
+    }
+
+    /// Searches a part that is set apart, then the rest of the plan.
+    fn choice(&mut self, choice: usize, end: usize, at: usize) -> Result<Turn, M::Error> {
+        self.scratch.is_met[choice] = false;
+        if self.step(at + 1)? == Turn::Stop {
+            return Ok(Turn::Stop);
+        }
+        let is_missing = !self.scratch.is_met[choice];
+        if !is_missing || self.pattern.choices[choice] != Choice::Optional {
+            return Ok(Turn::Next);
+        }
+        for i in 0..self.pattern.nodes.len() {
+            let node = &self.pattern.nodes[i];
+            if node.choice != Some(choice) || self.scratch.is_bound[self.plan.meant[i]] {
+                continue;
+            }
+            if let Some(slot) = node.slot {
+                self.env.bind_node(slot, None);
+            }
+            // No edge of the pattern may seem to be there: an edge never leads to its own node.
+            let edges = self
+                .pattern
+                .edges
+                .iter()
+                .filter(|edge| edge.choice == Some(choice));
+            let other = edges.clone().find_map(|edge| match (edge.from, edge.to) {
+                (from, to) if to == i => Some(from),
+                (from, to) if from == i => Some(to),
+                _ => None,
+            });
+            self.scratch.nodes[i] = self.scratch.nodes[other.unwrap_or(i)];
+        }
+        self.step(end + 1)
+    }
+
+    fn start(&mut self, node: usize, at: usize) -> Result<Turn, M::Error> {
         let base = self.scratch.open.len();
         match &self.pattern.nodes[node].what {
             Candidate::Root => {
@@ -179,7 +280,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             Candidate::Value(value) => {
                 return match self.env.node_value(value)? {
                     Some(found) if self.env.graph().exists(found) => self.try_node(node, found, at),
-                    Some(_) | None => Ok(Flow::Continue),
+                    Some(_) | None => Ok(Turn::Next),
                 };
             }
             Candidate::Type(ty) => match self.rare_end(node, *ty) {
@@ -196,12 +297,14 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         self.visits(end - base, BATCH)?;
         for i in base..end {
             let candidate = self.scratch.open[i].0;
-            if self.try_node(node, candidate, at)? == Flow::Stop {
-                return Ok(Flow::Stop);
+            let turn = self.try_node(node, candidate, at)?;
+            if turn != Turn::Next {
+                self.scratch.open.truncate(base);
+                return Ok(turn);
             }
         }
         self.scratch.open.truncate(base);
-        Ok(Flow::Continue)
+        Ok(Turn::Next)
     }
 
     fn open_extent(&mut self, ty: TypeId) {
@@ -262,7 +365,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
                 }
                 at = via.from;
             }
-            at == start && node != start
+            at == start && node != start && self.pattern.nodes[node].choice.is_none()
         };
         let graph = self.env.graph();
         let typed = (0..self.plan.via.len()).filter(is_joined);
@@ -271,7 +374,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         (count.saturating_mul(MUCH_RARER) < graph.count(ty)).then_some((count, rare))
     }
 
-    fn follow(&mut self, edge: usize, is_reversed: bool, at: usize) -> Result<Flow, M::Error> {
+    fn follow(&mut self, edge: usize, is_reversed: bool, at: usize) -> Result<Turn, M::Error> {
         let (path, from, to) = self.path(edge, is_reversed);
         let from = self.scratch.nodes[from];
         let base = self.scratch.open.len();
@@ -282,22 +385,41 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
                 break;
             };
             self.visits(1, BATCH)?;
-            if !visited.is_new(open.0) {
+            if !visited.is_new(&path, open) {
                 continue;
             }
             let Visit { is_found, goes_on } = path.visit(self.env.graph(), open);
-            if is_found && self.try_node(to, open.0, at)? == Flow::Stop {
-                return Ok(Flow::Stop);
+            if is_found && visited.is_first_find(open.0) {
+                let turn = self.try_node(to, open.0, at)?;
+                if turn != Turn::Next {
+                    self.scratch.open.truncate(base);
+                    return Ok(turn);
+                }
             }
             if goes_on {
                 path.go_on(self.env.graph(), open, &mut self.scratch.open);
             }
         }
-        Ok(Flow::Continue)
+        Ok(Turn::Next)
+    }
+
+    /// The node that a method gives for the node the edge begins at.
+    fn related(&mut self, edge: usize) -> Result<Option<NodeId>, M::Error> {
+        let EdgeKind::Relation(number) = self.pattern.edges[edge].kind else {
+            return Ok(None);
+        };
+        let found = self
+            .env
+            .node_value(&self.pattern.relations[usize::from(number)])?;
+        Ok(found.filter(|&node| self.env.graph().exists(node)))
     }
 
     /// Looks from the far end, which is quicker in trees: every node has one parent.
     fn check(&mut self, edge: usize) -> Result<bool, M::Error> {
+        if let EdgeKind::Relation(_) = self.pattern.edges[edge].kind {
+            let to = self.scratch.nodes[self.plan.meant[self.pattern.edges[edge].to]];
+            return Ok(self.related(edge)? == Some(to));
+        }
         let (path, from, to) = self.path(edge, true);
         let (from, to) = (self.scratch.nodes[from], self.scratch.nodes[to]);
         let mut n_visits = 0;
@@ -312,19 +434,19 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
     }
 
     /// Tries a node of the graph for a pattern node, then the rest of the plan.
-    fn try_node(&mut self, node: usize, found: NodeId, at: usize) -> Result<Flow, M::Error> {
+    fn try_node(&mut self, node: usize, found: NodeId, at: usize) -> Result<Turn, M::Error> {
         if !self.fits(node, found) {
-            return Ok(Flow::Continue);
+            return Ok(Turn::Next);
         }
         self.scratch.nodes[node] = found;
         self.scratch.is_bound[node] = true;
-        let flow = if self.bind(node, found)? {
+        let turn = if self.bind(node, found)? {
             self.step(at + 1)?
         } else {
-            Flow::Continue
+            Turn::Next
         };
         self.scratch.is_bound[node] = false;
-        Ok(flow)
+        Ok(turn)
     }
 
     fn fits(&self, node: usize, found: NodeId) -> bool {
@@ -359,7 +481,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             }
             self.scratch.nodes[i] = found;
             if let Some(slot) = self.pattern.nodes[i].slot {
-                self.env.bind_node(slot, found);
+                self.env.bind_node(slot, Some(found));
             }
             for arg in &self.pattern.nodes[i].args {
                 match arg {
@@ -382,17 +504,18 @@ const MUCH_RARER: usize = 8;
 /// The path along a pattern edge, with the pattern nodes it leads from and to.
 fn path<'p, E>(
     pattern: &'p Pattern<E>,
-    plan: &Plan,
+    plan: &'p Plan,
     edge: usize,
     is_reversed: bool,
 ) -> (Path<'p>, usize, usize) {
     let edge = &pattern.edges[edge];
-    let path = Path::new(
-        edge,
-        is_reversed,
-        plan.types[edge.from],
-        plan.types[edge.to],
-    );
+    let types = (plan.types[edge.from], plan.types[edge.to]);
+    let automaton = match edge.kind {
+        EdgeKind::Walk(number) => plan.automata.get(usize::from(number)),
+        _ => None,
+    };
+    let automaton = automaton.map(|both| &both[usize::from(is_reversed)]);
+    let path = Path::new(edge, is_reversed, types, automaton);
     let (left, right) = (plan.meant[edge.from], plan.meant[edge.to]);
     if is_reversed {
         (path, right, left)

@@ -106,12 +106,12 @@ impl World {
         let pattern = self.pattern(left, false);
         let plan = Plan::new(&pattern);
         let excludes = self.mode.excludes_consumed;
-        search(&pattern, &plan, excludes, self, &mut |world, matched| {
+        search(&pattern, &plan, excludes, self, &mut |world, found| {
             let Self {
                 graph, queue, mode, ..
             } = world;
             if queue.admit(graph, *mode, |_| 1) {
-                queue.begin(graph, &pattern, &plan, arrow, matched);
+                queue.begin(graph, &pattern, &plan, arrow, found.nodes());
                 world.produce(right)?;
                 world.queue.end(&mut world.graph);
             }
@@ -150,6 +150,9 @@ impl World {
             nodes: vec![],
             edges: vec![],
             conditions: vec![],
+            choices: vec![],
+            walks: vec![],
+            relations: vec![],
             first: None,
             last: None,
             span: Span::default(),
@@ -169,8 +172,13 @@ impl World {
                 "]" => previous = stack.pop().expect("balanced"),
                 condition if condition.starts_with('(') && condition.contains(' ') => {
                     let expr = condition[1..condition.len() - 1].to_owned();
-                    let needs = Some(pattern.nodes.len() - 1);
-                    pattern.conditions.push(Condition { expr, needs });
+                    let needs = vec![pattern.nodes.len() - 1];
+                    let choice = None;
+                    pattern.conditions.push(Condition {
+                        expr,
+                        needs,
+                        choice,
+                    });
                 }
                 operator
                     if !operator.starts_with(|c: char| c.is_alphabetic() || "^$".contains(c)) =>
@@ -229,6 +237,7 @@ impl World {
             slot,
             args: arg.into_iter().collect(),
             is_context,
+            choice: None,
             span: Span::default(),
         }
     }
@@ -304,8 +313,8 @@ impl MatchEnv<Expr> for World {
         &mut self.pool
     }
 
-    fn bind_node(&mut self, slot: u16, node: NodeId) {
-        self.values[usize::from(slot)] = Some(Variable::Node(node));
+    fn bind_node(&mut self, slot: u16, node: Option<NodeId>) {
+        self.values[usize::from(slot)] = node.map(Variable::Node);
     }
 
     fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), RewriteError> {
@@ -362,6 +371,7 @@ fn edge_of(text: &str) -> PatternEdge {
         kind,
         way,
         repeat: once,
+        choice: None,
     };
     let closure = |repeat| PatternEdge {
         repeat,

@@ -508,6 +508,19 @@ pub enum PatternItem {
     Branch(Vec<PatternItem>),
     /// `(* … *)` inside a left-hand side: context, matched but kept.
     Context(Vec<PatternItem>),
+    /// `(: … )`, `(& … )`, `(? … )`: a part that is searched apart from the rest.
+    Choice(Choice, Vec<PatternPart>, Span),
+}
+
+/// How a part of a pattern is searched that is set apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// `(: … )`: only its first match counts.
+    First,
+    /// `(& … )`: after all other parts.
+    Late,
+    /// `(? … )`: it may be missing.
+    Optional,
 }
 
 /// A node of a pattern.
@@ -537,7 +550,7 @@ pub struct EdgePattern {
 }
 
 /// Kinds of edges in patterns and right-hand sides.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub enum EdgeKind {
     /// `-->`
     Any,
@@ -547,8 +560,21 @@ pub enum EdgeKind {
     Branch,
     /// `/>`
     Refinement,
-    /// `-name->`: `ancestor`, `minDescendants`, `descendants`, or a constant or node the checker resolves.
-    Named(String),
+    /// `-name->`: `ancestor`, `minDescendants`, `descendants`, a constant, or a method with its further arguments.
+    Named(String, Vec<Expr>),
+    /// `(> B +>)`: several in a row, of a closure.
+    Walk(Vec<WalkItem>),
+}
+
+/// A part of a way that consists of several edges.
+#[derive(Clone, Debug)]
+pub enum WalkItem {
+    /// An edge, or a closure inside the closure.
+    Edge(EdgePattern),
+    /// A node on the way.
+    Node(NodePattern),
+    /// A condition.
+    Condition(Expr),
 }
 
 /// The way of an edge.

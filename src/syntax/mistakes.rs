@@ -149,11 +149,13 @@ impl Case<'_, '_> {
                 "classes without a name",
                 "declare a class and write `new` with its name",
             ),
-            "(" if matches!(self.word(self.at + 1), "?" | "&" | ":") => refuse(
-                span,
-                "optional, first and last matches (`(? …)`, `(: …)`, `(& …)`)",
-                "filter the matches of a query instead",
-            ),
+            ">" | "+>" | "/>" | "-->" | "<" | "<+" | "<--" if self.word(self.at + 1) == "|" => {
+                refuse(
+                    span,
+                    "alternatives between edges",
+                    "write `-->` for an edge of any kind",
+                )
+            }
             _ => None,
         }
     }

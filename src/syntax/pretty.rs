@@ -1,9 +1,9 @@
 //! The syntax tree as one line of text, for tests: operators are bracketed, so that the tree shows.
 
 use super::ast::{
-    Arrow, BinaryOp, Block, EdgeDirection, EdgeKind, EdgePattern, Expr, ExprKind, File, ForHead,
-    Ident, Item, Literal, LocalVar, Modifiers, ModuleParam, Param, Pattern, PatternItem,
-    PatternPart, RhsItem, Rule, RuleItem, Stmt, StmtKind, TypeRef, UnaryOp,
+    Arrow, BinaryOp, Block, Choice, EdgeDirection, EdgeKind, EdgePattern, Expr, ExprKind, File,
+    ForHead, Ident, Item, Literal, LocalVar, Modifiers, ModuleParam, NodePattern, Param, Pattern,
+    PatternItem, PatternPart, RhsItem, Rule, RuleItem, Stmt, StmtKind, TypeRef, UnaryOp, WalkItem,
 };
 
 /// Imports and declarations, one per line.
@@ -368,7 +368,11 @@ fn rule(rule: &Rule) -> String {
 }
 
 fn pattern(pattern: &Pattern) -> String {
-    join(&pattern.parts, ", ", |part| match part {
+    pattern_parts(&pattern.parts)
+}
+
+fn pattern_parts(parts: &[PatternPart]) -> String {
+    join(parts, ", ", |part| match part {
         PatternPart::Path(items) => pattern_items(items),
         PatternPart::Condition(cond) => format!("?{}", expr(cond)),
     })
@@ -376,34 +380,54 @@ fn pattern(pattern: &Pattern) -> String {
 
 fn pattern_items(items: &[PatternItem]) -> String {
     join(items, " ", |item| match item {
-        PatternItem::Node(node) => {
-            let label = node
-                .label
-                .as_ref()
-                .map_or_else(String::new, |label| format!("{}:", label.name));
-            let args = node.args.as_ref().map_or_else(String::new, |args| {
-                format!(
-                    "({})",
-                    join(args, ", ", |arg| arg
-                        .as_ref()
-                        .map_or_else(|| "_".to_owned(), expr))
-                )
-            });
-            format!("{label}{}{args}", ty(&node.name))
-        }
+        PatternItem::Node(node) => pattern_node(node),
         PatternItem::Edge(found) => edge(found),
         PatternItem::Branch(items) => format!("[{}]", pattern_items(items)),
         PatternItem::Context(items) => format!("(* {} *)", pattern_items(items)),
+        PatternItem::Choice(choice, parts, _) => {
+            let mark = match choice {
+                Choice::First => ':',
+                Choice::Late => '&',
+                Choice::Optional => '?',
+            };
+            format!("({mark} {})", pattern_parts(parts))
+        }
     })
+}
+
+fn pattern_node(node: &NodePattern) -> String {
+    let label = node
+        .label
+        .as_ref()
+        .map_or_else(String::new, |label| format!("{}:", label.name));
+    let args = node.args.as_ref().map_or_else(String::new, |args| {
+        format!(
+            "({})",
+            join(args, ", ", |arg| arg
+                .as_ref()
+                .map_or_else(|| "_".to_owned(), expr))
+        )
+    });
+    format!("{label}{}{args}", ty(&node.name))
+}
+
+fn walk_item(item: &WalkItem) -> String {
+    match item {
+        WalkItem::Edge(found) => edge(found),
+        WalkItem::Node(node) => pattern_node(node),
+        WalkItem::Condition(cond) => format!("?{}", expr(cond)),
+    }
 }
 
 fn edge(edge: &EdgePattern) -> String {
     let kind = match &edge.kind {
-        EdgeKind::Any => "any",
-        EdgeKind::Successor => "succ",
-        EdgeKind::Branch => "branch",
-        EdgeKind::Refinement => "refine",
-        EdgeKind::Named(name) => name,
+        EdgeKind::Any => "any".to_owned(),
+        EdgeKind::Successor => "succ".to_owned(),
+        EdgeKind::Branch => "branch".to_owned(),
+        EdgeKind::Refinement => "refine".to_owned(),
+        EdgeKind::Named(name, args) if args.is_empty() => name.clone(),
+        EdgeKind::Named(name, args) => format!("{name}({})", exprs(args)),
+        EdgeKind::Walk(items) => format!("({})", join(items, " ", walk_item)),
     };
     let (left, right) = match edge.direction {
         EdgeDirection::Forward => ("-", "->"),

@@ -250,7 +250,7 @@ impl Show<'_> {
         for condition in &pattern.conditions {
             parts.push(format!(
                 "if {:?} {}",
-                condition.needs,
+                condition.needs.iter().max(),
                 self.expr(&condition.expr)
             ));
         }

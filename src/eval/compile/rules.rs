@@ -45,12 +45,17 @@ impl Scope<'_> {
             .collect();
         let condition = |c: &Condition<Expr>| Condition {
             expr: PatternCode::Condition(self.boolean(&c.expr)),
-            needs: c.needs,
+            needs: c.needs.clone(),
+            choice: c.choice,
         };
+        let related = |node: &Expr| PatternCode::Node(self.node(node));
         let pattern = Pattern {
             nodes,
             edges: pattern.edges.clone(),
             conditions: pattern.conditions.iter().map(condition).collect(),
+            choices: pattern.choices.clone(),
+            walks: pattern.walks.clone(),
+            relations: pattern.relations.iter().map(related).collect(),
             first: pattern.first,
             last: pattern.last,
             span: pattern.span,
@@ -97,6 +102,7 @@ impl Scope<'_> {
             slot,
             args,
             is_context: node.is_context,
+            choice: node.choice,
             span: node.span,
         }
     }
@@ -153,7 +159,7 @@ impl Scope<'_> {
                 &compiled.plan,
                 mode.excludes_consumed,
                 &mut env,
-                &mut |env, nodes| {
+                &mut |env, found| {
                     env.machine.tick(span)?;
                     if let Some(plain) = plain
                         && plain
@@ -170,6 +176,7 @@ impl Scope<'_> {
                     if !env.admit(mode) {
                         return Ok(mode.after_match());
                     }
+                    let nodes = found.nodes();
                     let flow = env
                         .apply(arrow, nodes, &body)
                         .map_err(|trap| note_match(trap, env.machine, nodes, span))?;
@@ -311,8 +318,8 @@ impl MatchEnv<PatternCode> for Env<'_> {
         &mut self.machine.scratch
     }
 
-    fn bind_node(&mut self, slot: u16, node: NodeId) {
-        Some(node).store(&mut self.machine.stack, u32::from(slot));
+    fn bind_node(&mut self, slot: u16, node: Option<NodeId>) {
+        node.store(&mut self.machine.stack, u32::from(slot));
     }
 
     fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), Trap> {

@@ -86,9 +86,9 @@ impl Scope<'_> {
                 &compiled.plan,
                 false,
                 &mut env,
-                &mut |env, nodes| {
+                &mut |env, found| {
                     if let Some(at) = at {
-                        Some(nodes[result]).store(&mut env.machine.stack, at);
+                        found.node(result).store(&mut env.machine.stack, at);
                     }
                     env.machine.tick(span)?;
                     turn = visit(env.program, env.machine)?;

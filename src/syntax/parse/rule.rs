@@ -4,8 +4,8 @@ use super::grammar::Rule;
 use super::{Reader, kids};
 use crate::diag::{Diagnostic, Span};
 use crate::syntax::ast::{
-    self, Arrow, EdgeDirection, EdgeKind, EdgePattern, Expr, ExprKind, ForHead, Ident, NodePattern,
-    Pattern, PatternItem, PatternPart, RhsItem, RhsNode, RuleItem, TypeRef,
+    self, Arrow, Choice, EdgeDirection, EdgeKind, EdgePattern, Expr, ExprKind, ForHead, Ident,
+    NodePattern, Pattern, PatternItem, PatternPart, RhsItem, RhsNode, RuleItem, TypeRef, WalkItem,
 };
 use pest::iterators::Pair;
 
@@ -81,6 +81,7 @@ impl Reader<'_> {
     fn pattern_item(&self, pair: Pair<'_, Rule>, parts: &mut Vec<PatternPart>) -> PatternItem {
         match pair.as_rule() {
             Rule::context => self.context(pair, parts),
+            Rule::choice => self.choice(pair),
             Rule::pattern_branch => {
                 let items = kids(pair)
                     .flat_map(kids)
@@ -106,6 +107,20 @@ impl Reader<'_> {
             }
         }
         PatternItem::Context(own.unwrap_or_default())
+    }
+
+    fn choice(&self, pair: Pair<'_, Rule>) -> PatternItem {
+        let span = self.span(&pair);
+        let (mut choice, mut parts) = (Choice::First, vec![]);
+        for kid in kids(pair) {
+            match (kid.as_rule(), kid.as_str()) {
+                (Rule::choice_mark, "&") => choice = Choice::Late,
+                (Rule::choice_mark, "?") => choice = Choice::Optional,
+                (Rule::choice_mark, _) => choice = Choice::First,
+                _ => parts = self.pattern(kid).parts,
+            }
+        }
+        PatternItem::Choice(choice, parts, span)
     }
 
     fn pattern_node(&self, pair: Pair<'_, Rule>) -> NodePattern {
@@ -144,23 +159,36 @@ impl Reader<'_> {
 
     fn closure(&self, pair: Pair<'_, Rule>) -> EdgePattern {
         let span = self.span(&pair);
-        let mut edge = EdgePattern {
-            kind: EdgeKind::Any,
-            direction: EdgeDirection::Forward,
-            repeat: None,
-            span,
-        };
+        let (mut items, mut repeat) = (vec![], None);
         for kid in kids(pair) {
-            if kid.as_rule() == Rule::edge {
-                edge = EdgePattern {
-                    span,
-                    ..self.edge(kid)
-                };
-            } else {
-                edge.repeat = kids(kid).next().map(|times| self.repeat(times));
+            match kid.as_rule() {
+                Rule::edge => items.push(WalkItem::Edge(self.edge(kid))),
+                Rule::inner_closure => items.push(WalkItem::Edge(self.closure(kid))),
+                Rule::pattern_node => items.push(WalkItem::Node(self.pattern_node(kid))),
+                Rule::condition => {
+                    let conds = kids(kid).map(|cond| WalkItem::Condition(self.expr(cond)));
+                    items.extend(conds);
+                }
+                Rule::any_number => repeat = Some((0, None)),
+                _ => repeat = kids(kid).next().map(|times| self.repeat(times)),
             }
         }
-        edge
+        if let [WalkItem::Edge(edge)] = items.as_slice()
+            && edge.repeat.is_none()
+        {
+            let edge = edge.clone();
+            return EdgePattern {
+                repeat,
+                span,
+                ..edge
+            };
+        }
+        EdgePattern {
+            kind: EdgeKind::Walk(items),
+            direction: EdgeDirection::Forward,
+            repeat,
+            span,
+        }
     }
 
     fn repeat(&self, pair: Pair<'_, Rule>) -> (u32, Option<u32>) {
@@ -234,16 +262,13 @@ impl Reader<'_> {
 
     fn named_edge(&self, pair: Pair<'_, Rule>) -> EdgePattern {
         let span = self.span(&pair);
-        let (mut name, mut is_backward, mut is_forward) = (String::new(), false, false);
+        let (mut name, mut args) = (String::new(), vec![]);
+        let (mut is_backward, mut is_forward) = (false, false);
         for kid in kids(pair).flat_map(kids) {
             match kid.as_rule() {
                 Rule::edge_tail => is_backward = kid.as_str() == "<-",
                 Rule::edge_tip => is_forward = kid.as_str() == "->",
-                _ => {
-                    let parts: Vec<String> =
-                        self.path(kid).into_iter().map(|part| part.name).collect();
-                    name = parts.join(".");
-                }
+                _ => (name, args) = self.relation(kid),
             }
         }
         let direction = match (is_backward, is_forward) {
@@ -253,11 +278,24 @@ impl Reader<'_> {
             (false, false) => EdgeDirection::Undirected,
         };
         EdgePattern {
-            kind: EdgeKind::Named(name),
+            kind: EdgeKind::Named(name, args),
             direction,
             repeat: None,
             span,
         }
+    }
+
+    fn relation(&self, pair: Pair<'_, Rule>) -> (String, Vec<Expr>) {
+        let (mut name, mut args) = (String::new(), vec![]);
+        for kid in kids(pair) {
+            if kid.as_rule() == Rule::args {
+                args = self.args(kid);
+            } else {
+                let parts: Vec<String> = self.path(kid).into_iter().map(|part| part.name).collect();
+                name = parts.join(".");
+            }
+        }
+        (name, args)
     }
 
     // ── right sides ──

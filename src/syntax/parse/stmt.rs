@@ -4,8 +4,8 @@ use super::grammar::Rule;
 use super::item::with_dims;
 use super::{Reader, kids};
 use crate::syntax::ast::{
-    Block, Catch, Class, Expr, ForHead, Ident, LocalVar, Modifiers, Stmt, StmtKind, SwitchCase,
-    TypeRef,
+    Block, Catch, Class, Expr, ExprKind, ForHead, Ident, LocalVar, Modifiers, Stmt, StmtKind,
+    SwitchCase, TypeRef,
 };
 use pest::iterators::Pair;
 
@@ -157,6 +157,18 @@ impl Reader<'_> {
                 _ => {}
             }
         }
+        // `for (a:b)` goes from `a` to `b`; with more than one value behind the colon `a` is a variable.
+        if ty.path.is_empty()
+            && !matches!(sequence.kind, ExprKind::Range(..))
+            && !has_query(&sequence)
+        {
+            let from = Expr {
+                kind: ExprKind::Name(name.name),
+                span: name.span,
+            };
+            let kind = ExprKind::Range(Box::new(from), Box::new(sequence));
+            return ForHead::Sequence(Expr { kind, span });
+        }
         ForHead::Each {
             var: LocalVar {
                 is_final: modifiers.is_final,
@@ -260,5 +272,20 @@ impl Reader<'_> {
 
     pub(super) fn args(&self, pair: Pair<'_, Rule>) -> Vec<Expr> {
         kids(pair).map(|arg| self.range(arg)).collect()
+    }
+}
+
+/// Whether an expression is a query, or goes on from one.
+fn has_query(value: &Expr) -> bool {
+    let mut at = value;
+    loop {
+        at = match &at.kind {
+            ExprKind::Query(_) => return true,
+            ExprKind::Member(object, _)
+            | ExprKind::Index(object, _)
+            | ExprKind::With(object, _)
+            | ExprKind::Call(object, _) => object,
+            _ => return false,
+        };
     }
 }
