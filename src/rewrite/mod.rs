@@ -12,6 +12,7 @@ mod apply;
 mod automaton;
 mod batches;
 mod deferred;
+mod env;
 mod path;
 mod plan;
 mod producer;
@@ -21,7 +22,8 @@ mod search;
 mod tests;
 
 pub use deferred::{Assignment, DeferredValue};
+pub use env::{Flow, Found, Match, MatchEnv};
 pub use plan::Plan;
 pub use producer::Instantiated;
 pub use queue::{Derivation, Mode, Queue, RewriteError};
-pub use search::{Flow, Found, Match, MatchEnv, ScratchPool, search};
+pub use search::{ScratchPool, search};

@@ -1,8 +1,8 @@
 //! What a step wants done, collected until [`Queue::apply`] does it all at once.
 
 use super::deferred::Assignment;
+use super::env::Flow;
 use super::producer::Frame;
-use super::search::Flow;
 use crate::graph::{Batch, EdgeBits, Graph, GraphError, NodeId, Payload};
 
 /// What can go wrong when a step is applied; each is the model's fault.
