@@ -161,6 +161,7 @@ impl Scope<'_> {
                 &mut env,
                 &mut |env, found| {
                     env.machine.tick(span)?;
+                    let nodes = found.nodes();
                     if let Some(plain) = plain
                         && plain
                             .note(program, env.machine, nodes)
@@ -176,7 +177,6 @@ impl Scope<'_> {
                     if !env.admit(mode) {
                         return Ok(mode.after_match());
                     }
-                    let nodes = found.nodes();
                     let flow = env
                         .apply(arrow, nodes, &body)
                         .map_err(|trap| note_match(trap, env.machine, nodes, span))?;
