@@ -358,6 +358,36 @@ fn half_transparent_things() {
     }
 }
 
+#[test]
+fn a_half_transparent_leaf_lies_on_a_surface() {
+    // Half of the light meets the leaf, which is first by its number, and half what it lies on; nothing is lost between.
+    let leaf = Material::lambert(gray(0.2)).with_alpha(0.5);
+    let grounds = [
+        (Material::lambert(gray(0.8)), 0.5 * 0.2 + 0.5 * 0.8),
+        (
+            Material::lambert(Rgb::BLACK).emitting(gray(3.0), gray(3.0)),
+            0.5 * 0.2 + 0.5 * 3.0,
+        ),
+    ];
+    for (ground, truth) in grounds {
+        for place in [at(0., 0., 1.), at(0.3, -7.1, 1234.5)] {
+            let scene = Room::default()
+                .with(square(2.0), place, leaf.clone())
+                .with(square(2.0), place, ground.clone())
+                .under(uniform_sky(1.0))
+                .build();
+            let eye = place.transform_point3(DVec3::new(0.1, 0.2, 1.0));
+            let down = ray(eye.to_array(), [0.2, 0.1, -1.0]);
+            assert_mean(
+                "on a surface",
+                &observe(&scene, &path(None), down),
+                truth,
+                4,
+            );
+        }
+    }
+}
+
 // ── daylight ──
 
 #[test]

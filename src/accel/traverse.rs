@@ -4,7 +4,7 @@ use super::node::{Bvh, Node, WIDTH};
 use super::stack::{TraversalStack, Waiting};
 use crate::math::tolerance::BOX_SLACK;
 use glam::DVec3;
-use std::ops::{ControlFlow, Range};
+use std::ops::{ControlFlow, Range, RangeInclusive};
 
 /// What a leaf answers: go on looking, as far as this parameter and no farther, or stop.
 pub type Step = ControlFlow<(), f32>;
@@ -51,28 +51,36 @@ impl BoxRay {
     pub fn limit(&self, t: f64) -> f32 {
         ((t * self.scale) as f32 * BOX_SLACK).min(f32::MAX)
     }
+
+    /// The same, rounded down and at least 0.
+    #[inline]
+    #[must_use]
+    pub fn start(&self, t: f64) -> f32 {
+        ((t * self.scale) as f32 / BOX_SLACK).clamp(0.0, f32::MAX)
+    }
 }
 
 impl Bvh {
-    /// Calls `leaf` with the item ranges of all leaves whose boxes the ray enters before `limit` (a result of
-    /// [`BoxRay::limit`]), roughly from near to far. `leaf` may shorten the limit or stop the walk.
+    /// Calls `leaf` with the item ranges of all leaves whose boxes the ray meets in `part` (from a result of
+    /// [`BoxRay::start`] to one of [`BoxRay::limit`]), roughly from near to far. `leaf` may shorten the limit or stop the walk.
     ///
     /// The walk leaves `stack` as it found it; `leaf` gets it for walks through hierarchies nested in this one.
     pub fn traverse(
         &self,
         ray: &BoxRay,
-        mut limit: f32,
+        part: RangeInclusive<f32>,
         stack: &mut TraversalStack,
         mut leaf: impl FnMut(Range<usize>, &mut TraversalStack) -> Step,
     ) -> ControlFlow<()> {
         if self.nodes.is_empty() {
             return ControlFlow::Continue(());
         }
+        let (start, mut limit) = part.into_inner();
         let bottom = stack.len();
         let mut next = Waiting::default();
         loop {
             if next.count == 0 {
-                self.nodes[next.first as usize].push_entered(ray, limit, stack);
+                self.nodes[next.first as usize].push_entered(ray, start, limit, stack);
             } else {
                 let first = next.first as usize;
                 match leaf(first..first + next.count as usize, stack) {
@@ -99,12 +107,12 @@ impl Bvh {
 }
 
 impl Node {
-    /// Pushes the children that the ray enters before `limit`, the farthest first.
+    /// Pushes the children that the ray meets between `start` and `limit`, the farthest first.
     #[inline]
-    fn push_entered(&self, ray: &BoxRay, limit: f32, stack: &mut TraversalStack) {
+    fn push_entered(&self, ray: &BoxRay, start: f32, limit: f32, stack: &mut TraversalStack) {
         // Where the ray is inside all three slabs. A NaN, from 0 · ∞ for a ray in the plane of a face, compares false and
         // changes nothing, so such a ray is inside that slab.
-        let mut enter = [0.0_f32; WIDTH];
+        let mut enter = [start; WIDTH];
         let mut exit = [limit; WIDTH];
         for axis in 0..3 {
             let near = &self.planes[ray.near[axis]];

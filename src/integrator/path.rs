@@ -96,7 +96,7 @@ impl RadianceEstimator for PathEstimator<'_> {
             sampler.start_vertex(n_scatterings.saturating_add(1));
 
             // Find the next path vertex, or add the sky and stop.
-            let Some(point) = self.next_surface(&mut ray, sampler, rays) else {
+            let Some(point) = self.next_surface(&ray, sampler, rays) else {
                 radiance += throughput * self.escaping_radiance(ray.direction, last);
                 break;
             };
@@ -170,16 +170,19 @@ impl RadianceEstimator for PathEstimator<'_> {
 }
 
 impl PathEstimator<'_> {
-    /// The next surface that the light on this ray meets; moves `ray` past those that it passes through.
+    /// The next surface that the light on this ray meets.
+    ///
+    /// It looks on along the same ray after each surface that it passes through, not along a ray that starts there: that would
+    /// start off the surface, and so also off one that coincides with it.
     fn next_surface(
         &self,
-        ray: &mut Ray,
+        ray: &Ray,
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Option<SurfacePoint> {
+        rays.closest += 1;
+        let mut hit = self.scene.closest(ray)?;
         for passage in 0_u16.. {
-            rays.closest += 1;
-            let hit = self.scene.closest(ray)?;
             let point = self.scene.surface(ray, &hit);
             let alpha = self.scene.material(point.material).alpha;
             // At the last number the surface counts as met: 65,535 layers of glass are opaque.
@@ -187,7 +190,8 @@ impl PathEstimator<'_> {
             {
                 return Some(point);
             }
-            *ray = point.spawn_ray(ray.direction);
+            rays.closest += 1;
+            hit = self.scene.closest_after(ray, &hit)?;
         }
         None
     }

@@ -7,6 +7,7 @@ use crate::accel::{BoxRay, TraversalStack};
 use crate::geometry::interval::{Interval, Line};
 use crate::geometry::triangle::{FlatHit, Shear, intersect_parallelogram, intersect_triangle};
 use crate::geometry::unit::Face;
+use crate::math::tolerance::gamma;
 use crate::math::{Bounds3, PrimitiveId, Ray};
 use glam::DAffine3;
 use std::ops::ControlFlow;
@@ -35,6 +36,14 @@ trait Sink {
     const EVERY: bool;
     /// The part of the ray that still counts.
     fn interval(&self) -> Interval;
+    /// What lies wholly nearer than this does not count either, and need not be looked at.
+    fn start(&self) -> f64 {
+        self.interval().after
+    }
+    /// Whether an intersection inside the interval counts.
+    fn wants(&self, hit: &Hit) -> bool {
+        hit.t <= self.interval().until
+    }
     /// Takes an intersection inside the interval.
     fn take(&mut self, hit: Hit, alpha: impl FnOnce() -> f64) -> ControlFlow<()>;
 }
@@ -43,8 +52,13 @@ trait Sink {
 struct Nearest {
     after: f64,
     until: f64,
+    /// Only what comes later than this in the order of distance and number counts.
+    passed: Option<Passed>,
     best: Option<Hit>,
 }
+
+/// A place in the order of a ray's intersections.
+type Passed = (f64, PrimitiveId);
 
 impl Sink for Nearest {
     const EVERY: bool = false;
@@ -55,6 +69,17 @@ impl Sink for Nearest {
             after: self.after,
             until: self.until,
         }
+    }
+
+    #[inline]
+    fn start(&self) -> f64 {
+        self.passed.map_or(self.after, |(t, _)| t)
+    }
+
+    #[inline]
+    fn wants(&self, hit: &Hit) -> bool {
+        let is_later = |passed| (hit.t, hit.primitive) > passed;
+        hit.t <= self.until && self.passed.is_none_or(is_later)
     }
 
     #[inline]
@@ -97,9 +122,23 @@ impl Scene {
     /// The nearest surface along the ray, however transparent; at equal distance, the primitive with the lowest number.
     #[must_use]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
+        self.nearest(ray, None)
+    }
+
+    /// The next surface along the same ray after `hit`, one of its intersections: the next in the order of distance and,
+    /// at equal distance, of numbers. So surfaces that lie in one another are found one after the other, each once.
+    #[must_use]
+    pub fn closest_after(&self, ray: &Ray, hit: &Hit) -> Option<Hit> {
+        self.nearest(ray, Some((hit.t, hit.primitive)))
+    }
+
+    fn nearest(&self, ray: &Ray, passed: Option<Passed>) -> Option<Hit> {
+        // The interval is that of the whole ray whatever was passed: it decides where parameters are counted from, and
+        // they must be the same bits each time to be compared.
         let mut sink = Nearest {
             after: ray.t_min,
             until: ray.t_max,
+            passed,
             best: None,
         };
         let _ = self.walk(ray, &mut sink);
@@ -179,6 +218,9 @@ impl Scene {
             v: at.y,
             face: Face::Side,
         };
+        if !sink.wants(&hit) {
+            return ControlFlow::Continue(());
+        }
         sink.take(hit, || self.alpha(plane.shape.material))
     }
 }
@@ -207,12 +249,15 @@ struct Prepared {
 
 impl<S: Sink> Walk<'_, '_, S> {
     /// The interval that still counts, in parameters of a line that starts `offset` later than the ray.
+    ///
+    /// It ends later by what the difference may be rounded, so that nothing is lost that lies just at the end; what is
+    /// found is judged by [`Sink::wants`] in the ray's own parameter.
     #[inline]
     fn interval(&self, offset: f64) -> Interval {
         let whole = self.sink.interval();
         Interval {
             after: whole.after - offset,
-            until: whole.until - offset,
+            until: whole.until - offset + gamma(4) * (whole.until + offset),
         }
     }
 
@@ -236,11 +281,12 @@ impl<S: Sink> Walk<'_, '_, S> {
         };
 
         let box_ray = BoxRay::new(line.origin, line.direction);
+        let start = box_ray.start(self.sink.start() - place.offset);
         let limit = box_ray.limit(self.interval(place.offset).until);
         place
             .group
             .bvh
-            .traverse(&box_ray, limit, stack, |range, stack| {
+            .traverse(&box_ray, start..=limit, stack, |range, stack| {
                 for item in &place.group.items[range] {
                     if self.offer(*item, place, &prepared, stack).is_break() {
                         return ControlFlow::Break(());
@@ -309,6 +355,9 @@ impl<S: Sink> Walk<'_, '_, S> {
             v,
             face: Face::Side,
         };
+        if !self.sink.wants(&hit) {
+            return ControlFlow::Continue(());
+        }
         self.take(place, number, hit)
     }
 
@@ -328,11 +377,14 @@ impl<S: Sink> Walk<'_, '_, S> {
                 v: 0.0,
                 face,
             };
+            interval.after = t;
+            if !self.sink.wants(&hit) {
+                continue;
+            }
             self.take(place, solid.number, hit)?;
             if !S::EVERY {
                 break;
             }
-            interval.after = t;
         }
         ControlFlow::Continue(())
     }

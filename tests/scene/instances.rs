@@ -1,6 +1,6 @@
 //! Instances, transparency, emitters and meshes: what a whole scene answers.
 
-use crate::shapes::{inward, shapes};
+use crate::shapes::{all_along, inward, shapes};
 use crate::worlds::{Random, build, describe, icosphere, instance, mesh, placed};
 use glam::{DAffine3, DVec2, DVec3};
 use understory::color::Rgb;
@@ -229,6 +229,8 @@ fn light_goes_straight_through_what_alpha_leaves_open() {
         let ray = Ray::new(DVec3::new(-5.0, aim.y, aim.z), DVec3::X);
         let near = |found: f64, power: i32| (found / 0.9_f64.powi(power) - 1.0).abs() < 1e-12;
         assert!(near(open.transmittance(&ray), 40) && near(clear.transmittance(&ray), 38));
+        let found = all_along(&open, &ray);
+        assert!(found.len() == 40 && found.is_sorted_by(|a, b| a.t < b.t));
         assert!(!open.occluded(&ray) && closed.occluded(&ray));
         // As far as the middle of the third ball: five surfaces.
         assert!(near(closed.transmittance(&ray.until(11.0)), 5));

@@ -5,8 +5,8 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::PI;
 use understory::geometry::Shape;
 use understory::math::{PrimitiveId, Ray};
-use understory::scene::Scene;
 use understory::scene::description::{Group, OrganId, SceneDescription};
+use understory::scene::{Hit, Scene};
 
 fn frustum(length: f64, base_radius: f64, top_radius: f64, caps: bool) -> Shape {
     Shape::Frustum {
@@ -337,7 +337,45 @@ fn coincident_surfaces_are_hit_in_the_order_of_their_numbers_each_once() {
         0,
     )]);
     let ray = Ray::new(DVec3::new(0.1, 0.1, 5.0), DVec3::NEG_Z);
-    assert_eq!(scene.closest(&ray).unwrap().primitive, PrimitiveId(0));
+    let found = all_along(&scene, &ray);
+    assert!(
+        (0..100)
+            .map(PrimitiveId)
+            .eq(found.iter().map(|hit| hit.primitive))
+    );
+
+    // The same through instances, on a plane and from far away: what rounds differently still comes once each, in order.
+    let leaf = Shape::Parallelogram {
+        corner: DVec3::NEG_ONE * DVec3::new(1.0, 1.0, 0.0),
+        edge_u: DVec3::X * 3.0,
+        edge_v: DVec3::Y * 3.0,
+    };
+    let leaves = Group {
+        shapes: (0..20)
+            .map(|k| placed(leaf.clone(), DAffine3::IDENTITY, k))
+            .collect(),
+        instances: vec![],
+    };
+    let turned = |k: u32| instance(0, DAffine3::from_rotation_z(0.1 * f64::from(k)), k);
+    let stand = Group {
+        shapes: vec![placed(Shape::Plane, DAffine3::IDENTITY, 20)],
+        instances: (0..10).map(turned).collect(),
+    };
+    let scene = Scene::build(describe(vec![leaves, stand])).unwrap();
+    for start in [1.0, 1e3, 1e9] {
+        let slanted = DVec3::new(0.1, 0.2, -1.0).normalize();
+        let found = all_along(&scene, &Ray::new(slanted * -start, slanted));
+        let mut primitives: Vec<_> = found.iter().map(|hit| hit.primitive).collect();
+        primitives.sort_unstable();
+        primitives.dedup();
+        assert_eq!((found.len(), primitives.len()), (201, 201));
+        assert!(found.is_sorted_by_key(|hit| hit.t));
+    }
+}
+
+/// All that lies along a ray, one after the other.
+pub(crate) fn all_along(scene: &Scene, ray: &Ray) -> Vec<Hit> {
+    std::iter::successors(scene.closest(ray), |hit| scene.closest_after(ray, hit)).collect()
 }
 
 #[test]
