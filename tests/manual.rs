@@ -96,7 +96,12 @@ fn word_lists() -> Vec<(&'static str, BTreeSet<&'static str>)> {
         ("classes", classes.filter(is_class).collect()),
         (
             "constants",
-            constants().iter().map(|row| row.name).collect(),
+            // A single letter, such as `Math.E`, is more often a module of the user's.
+            constants()
+                .iter()
+                .map(|row| row.name)
+                .filter(|name| name.len() > 1)
+                .collect(),
         ),
         (
             "functions",

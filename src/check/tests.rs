@@ -103,7 +103,10 @@ const WARNED: &[(&str, &[&str])] = &[
     ("63-acc-int-from-sum", &["1:unused-module"]),
     ("67-acc-float-param-double", &["1:unused-module"]),
     ("74-acc-uninitialised", &["1:unused-module"]),
-    ("75-acc-missing-return", &["1:unused-module"]),
+    (
+        "75-acc-missing-return",
+        &["1:missing-return", "1:unused-module"],
+    ),
     ("77-acc-byte-200", &["1:unused-module"]),
     ("87-acc-private-field", &["1:unused-module"]),
     ("89-acc-return-in-rules", &["1:unused-module"]),

@@ -5,6 +5,7 @@
 mod modules;
 mod numbers;
 mod reach;
+mod results;
 mod rules;
 #[cfg(test)]
 mod tests;
@@ -18,6 +19,7 @@ pub(super) fn lint(model: &Model) -> Diagnostics {
     let mut found = Diagnostics::default();
     rules::check(model, &mut found);
     reach::check(model, &mut found);
+    results::check(model, &mut found);
     modules::check(model, &mut found);
     numbers::check(model, &mut found);
     found

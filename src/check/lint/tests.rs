@@ -126,6 +126,50 @@ fn code_behind_a_jump_is_told_once() {
 }
 
 #[test]
+fn methods_that_may_give_nothing_are_told() {
+    check_cases(&[
+        (
+            "int f(int n) { if (n > 1) return 2; }",
+            &["1:missing-return"],
+        ),
+        (
+            "int f(int n) { while (n > 1) { return 2; } }",
+            &["1:missing-return"],
+        ),
+        (
+            "int f(int n) { while (true) { if (n > 1) break; } }",
+            &["1:missing-return"],
+        ),
+        (
+            "int f(int n) { switch (n) { case 1: return 2; } }",
+            &["1:missing-return"],
+        ),
+        ("int f() [ Axiom ==> F(1); ]", &["1:missing-return"]),
+        ("int f(int n) { if (n > 1) return 2; else return 3; }", &[]),
+        ("int f(int n) { if (n > 1) { return 2; } return 3; }", &[]),
+        (
+            "int f(int n) { while (true) { if (n > 1) return 3; n++; } }",
+            &[],
+        ),
+        (
+            "int f(int n) { for (;;) { n++; if (n > 9) return n; } }",
+            &[],
+        ),
+        (
+            "int f(int n) { switch (n) { case 1: return 2; default: return 3; } }",
+            &[],
+        ),
+        (
+            "int f(int n) { try { return n; } catch (Exception e) { return 2; } }",
+            &[],
+        ),
+        ("int f(int n) { try { n++; } finally { return 2; } }", &[]),
+        ("int f(int n) { throw new Exception(); }", &[]),
+        ("abstract module A { abstract int f(); } void g() { }", &[]),
+    ]);
+}
+
+#[test]
 fn whole_quotients_that_become_fractions_are_told() {
     check_cases(&[
         (
