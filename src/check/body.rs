@@ -72,9 +72,11 @@ impl Checker<'_> {
             }
             MethodSource::Initializer(block) => Some(self.stmts(&block.stmts)),
         };
-        let span = match source {
-            MethodSource::Written(method) | MethodSource::Constructor(method) => method.span,
-            MethodSource::Initializer(block) => block.span,
+        let (span, name_span) = match source {
+            MethodSource::Written(method) | MethodSource::Constructor(method) => {
+                (method.span, method.name.span)
+            }
+            MethodSource::Initializer(block) => (block.span, block.span),
         };
         let frame = self.finish(Body::Method(id));
         let params = params
@@ -89,6 +91,7 @@ impl Checker<'_> {
             frame,
             body,
             span,
+            name_span,
         }
     }
 

@@ -61,6 +61,12 @@ impl Checker<'_> {
 
     /// The value as a condition.
     pub(super) fn boolean(&mut self, value: Expr) -> Option<Expr> {
+        if matches!(value.kind, ExprKind::Assign(..)) && value.ty != Type::Boolean {
+            let fault = self.mismatch(&value.ty, &Type::Boolean, value.span);
+            let hints = vec!["`=` assigns; write `==` to compare".into()];
+            self.report(crate::diag::Diagnostic { hints, ..fault });
+            return None;
+        }
         self.assign_value(value, &Type::Boolean)
     }
 

@@ -135,6 +135,13 @@ impl Checker<'_> {
                     .hint(format!("write `new {name}(…)` outside of rules")),
             );
         }
+        if ClassId::named(name).is_some() {
+            return Some(
+                fault
+                    .label("this is a class")
+                    .hint(format!("write `new {name}(…)`")),
+            );
+        }
         if !library::functions_named("Math", name).is_empty() {
             return Some(fault.hint(format!(
                 "write `Math.{name}(…)`, or begin the file with `import static java.lang.Math.*;`"

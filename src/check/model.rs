@@ -111,6 +111,8 @@ pub struct Method {
     pub body: Option<Vec<Stmt>>,
     /// Its declaration.
     pub span: Span,
+    /// Its name in the declaration.
+    pub name_span: Span,
 }
 
 /// A variable of the model.

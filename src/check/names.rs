@@ -279,9 +279,19 @@ impl Checker<'_> {
             "boolean", "byte", "short", "char", "int", "long", "float", "double", "String",
             "Object",
         ];
+        // Where a declaration begins, a word may have been meant that is no type.
+        let words = [
+            "module",
+            "import",
+            "static",
+            "public",
+            "protected",
+            "private",
+            "abstract",
+        ];
         let nodes = self.types.iter().map(|(_, ty)| &*ty.name);
         let classes = ClassId::ALL.iter().map(|class| class.name());
-        self.did_you_mean(fault, name, nodes.chain(classes).chain(java))
+        self.did_you_mean(fault, name, nodes.chain(classes).chain(java).chain(words))
     }
 
     /// The fault of a name that stands where a module must.
@@ -292,16 +302,33 @@ impl Checker<'_> {
             return Diagnostic::error("unsupported-type", span, message).hint(hint);
         }
         let fault = Diagnostic::error("unknown-module", span, format!("unknown module `{name}`"))
-            .label("no such module");
+            .label("no such module or turtle command");
         if self.method_names.contains_key(name) {
             return fault.hint(format!(
                 "`{name}` is a method; a condition stands in parentheses: `({name}(x))`"
             ));
         }
+        if let Some(command) = foreign_command(name) {
+            return fault.hint(format!("write {command}"));
+        }
         let labels = self.cx.local_names();
         let nodes = self.types.iter().map(|(_, ty)| &*ty.name);
         self.did_you_mean(fault, name, nodes.chain(labels.iter().map(String::as_str)))
     }
+}
+
+/// What other turtles call a command, in the words of this one.
+fn foreign_command(name: &str) -> Option<&'static str> {
+    Some(match name.to_lowercase().as_str() {
+        "forward" | "fd" | "draw" | "line" => "`F(length)` to draw and walk",
+        "move" | "walk" | "jump" => "`M(length)` to walk without drawing",
+        "turn" | "yaw" | "left" | "right" | "rt" | "lt" => "`RU(degrees)` to turn",
+        "pitch" => "`RL(degrees)` to pitch",
+        "roll" => "`RH(degrees)` to roll",
+        "push" => "`[` to begin a branch",
+        "pop" => "`]` to end a branch",
+        _ => return None,
+    })
 }
 
 fn local_binding(local: &super::context::Local, span: Span) -> Binding {

@@ -179,12 +179,12 @@ impl Checker<'_> {
             }
         }
         let given = self.type_names(args.iter().map(|a| &a.ty));
-        let given = if given.is_empty() {
-            "no arguments".into()
+        let given = format!("({given})");
+        let message = if args.is_empty() {
+            format!("`{name}` needs arguments")
         } else {
-            format!("({given})")
+            format!("`{name}` does not take {given}")
         };
-        let message = format!("`{name}` does not take {given}");
         let forms: Vec<String> = overloads
             .iter()
             .take(8)

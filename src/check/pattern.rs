@@ -309,6 +309,7 @@ impl Checker<'_> {
         cursor: &mut Cursor<'_>,
     ) {
         let Some(index) = self.pattern_node(builder, node, at) else {
+            self.poison_args(node.args.as_deref().unwrap_or_default());
             builder.is_wrong = true;
             *cursor = Cursor::default();
             return;

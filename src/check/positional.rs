@@ -1,6 +1,7 @@
 //! Positional parameters of patterns: `A(x, 3)` binds and compares.
 
 use super::Checker;
+use super::context::Local;
 use super::model::{Expr, ExprKind, Type};
 use super::pattern::Builder;
 use super::types::Fit;
@@ -27,8 +28,13 @@ impl Checker<'_> {
                 return None;
             }
             let name = self.types[ty].name.to_string();
+            let noun = if params.len() == 1 {
+                "parameter"
+            } else {
+                "parameters"
+            };
             let message = format!(
-                "`{name}` has {} parameters, the pattern gives {n_given}",
+                "`{name}` has {} {noun}, the pattern gives {n_given}",
                 params.len()
             );
             let mut fault = Diagnostic::error("pattern-arguments", span, message);
@@ -39,6 +45,7 @@ impl Checker<'_> {
                 ));
             }
             self.report(fault);
+            self.poison_args(args);
             return None;
         }
         let mut checked = vec![];
@@ -50,6 +57,27 @@ impl Checker<'_> {
             }
         }
         Some(checked)
+    }
+
+    /// Declares the names among the parameters of a node that could not be read, so that their uses are not reported too.
+    pub(super) fn poison_args(&mut self, args: &[Option<ast::Expr>]) {
+        for arg in args.iter().flatten() {
+            let ast::ExprKind::Name(name) = &arg.kind else {
+                continue;
+            };
+            if name == "^" || self.lookup(name, arg.span).is_some() {
+                continue;
+            }
+            let slot = self.cx.slot(Type::Object, arg.span);
+            let name = name.clone();
+            self.cx.declare(Local {
+                name,
+                ty: None,
+                slot,
+                is_final: false,
+                value: None,
+            });
+        }
     }
 
     /// Fields that positional parameters stand for: of modules their parameters, of built-in types those of the longest constructor.

@@ -146,7 +146,7 @@ impl Checker<'_> {
                         self.new_node(id, args, e.span)
                     }
                     None if self.method_names.contains_key(name) || self.is_function(name) => {
-                        self.value(e)
+                        self.called_node(e)
                     }
                     None => {
                         let _args = self.exprs(args);
@@ -165,6 +165,18 @@ impl Checker<'_> {
             }
             _ => self.value(e),
         }
+    }
+
+    /// A call that gives a node.
+    fn called_node(&mut self, e: &ast::Expr) -> Option<Expr> {
+        let called = self.expr(e)?;
+        if called.ty == Type::Void {
+            let message = "a node is needed here; this gives no value";
+            let fault = Diagnostic::error("not-a-node", e.span, message).label("is `void`");
+            self.report(fault.hint("put code into `{ … }`"));
+            return None;
+        }
+        Some(called)
     }
 
     fn is_function(&self, name: &str) -> bool {

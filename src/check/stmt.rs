@@ -183,9 +183,11 @@ impl Checker<'_> {
         is_final: bool,
         value: Option<super::model::Constant>,
     ) -> Slot {
-        if self.cx.local_here(&name.name).is_some() {
+        if let Some(first) = self.cx.local_here(&name.name) {
             let message = format!("variable `{}` is declared twice in this block", name.name);
-            self.report(Diagnostic::error("duplicate-variable", name.span, message));
+            let fault = Diagnostic::error("duplicate-variable", name.span, message);
+            let first = self.cx.slot_span(first.slot);
+            self.report(first.map_or(fault.clone(), |first| fault.also(first, "first here")));
         }
         let slot = self.cx.slot(ty.clone().unwrap_or(Type::Object), name.span);
         self.cx.declare(Local {

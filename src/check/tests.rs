@@ -105,7 +105,7 @@ const WARNED: &[(&str, &[&str])] = &[
     ("74-acc-uninitialised", &["1:unused-module"]),
     (
         "75-acc-missing-return",
-        &["1:missing-return", "1:unused-module"],
+        &["1:unused-module", "2:missing-return"],
     ),
     ("77-acc-byte-200", &["1:unused-module"]),
     ("87-acc-private-field", &["1:unused-module"]),

@@ -258,7 +258,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     };
     candidates
         .into_iter()
-        .filter_map(|c| Some((distance(c)?, c)))
+        .filter_map(|c| Some((distance(c)?, strsim::damerau_levenshtein(name, c), c)))
         .min()
-        .map(|(_, c)| c)
+        .map(|(_, _, c)| c)
 }

@@ -48,7 +48,33 @@ impl Brackets {
             // Better believe the declarations than report the outermost bracket only.
             return Pairing::new(text, &scan.tokens).run(true);
         }
+        if let [Fault::Stray { close }] = plain.faults[..] {
+            return plain.with_early_stray(text, scan, close).unwrap_or(plain);
+        }
         plain
+    }
+
+    /// Where one closing bracket is too many, one before it that ends a method in the middle of a rule is rather it.
+    fn with_early_stray(&self, text: &str, scan: &Scan, stray: usize) -> Option<Self> {
+        let word = |i: usize| {
+            scan.tokens
+                .get(i)
+                .map_or("", |token| &text[token.start..token.end])
+        };
+        let ends_method = |close: usize| {
+            let open = self.opener(close);
+            word(close) == "]" && open > 0 && word(open) == "[" && word(open - 1) == ")"
+        };
+        let cuts_rule = |close: usize| !matches!(word(close - 1), ";" | "}" | "[");
+        let early = (1..stray)
+            .rev()
+            .find(|&close| ends_method(close) && cuts_rule(close))?;
+        let mut pairing = Pairing::new(text, &scan.tokens);
+        pairing.skipped = Some(early);
+        let mut found = pairing.run(false);
+        let is_better = found.faults.is_empty();
+        found.faults.push(Fault::Stray { close: early });
+        is_better.then_some(found)
     }
 
     /// The token behind the group that opens at token `open`.
@@ -66,6 +92,10 @@ struct Pairing<'t> {
     text: &'t str,
     tokens: &'t [Token],
     open: Vec<usize>,
+    /// Which brackets open a branch on the right-hand side of a rule.
+    is_branch: Vec<bool>,
+    /// A bracket that is passed over.
+    skipped: Option<usize>,
     found: Brackets,
 }
 
@@ -79,6 +109,8 @@ impl<'t> Pairing<'t> {
             text,
             tokens,
             open: vec![],
+            is_branch: branches(text, tokens),
+            skipped: None,
             found,
         }
     }
@@ -87,6 +119,7 @@ impl<'t> Pairing<'t> {
         for (i, token) in self.tokens.iter().enumerate() {
             let text = &self.text[token.start..token.end];
             match token.kind {
+                _ if self.skipped == Some(i) => {}
                 TokenKind::Open => self.open.push(i),
                 TokenKind::Close => self.close(i, text),
                 TokenKind::Mark if text == ";" => self.end_parentheses(i),
@@ -124,14 +157,15 @@ impl<'t> Pairing<'t> {
         self.found.partner[close] = open;
     }
 
-    /// A `;` ends what is in parentheses, except in `for (;;)` and `.( ; )`.
+    /// A `;` ends what is in parentheses, except in `for (;;)` and `.( ; )`, and branches of right-hand sides.
     fn end_parentheses(&mut self, at: usize) {
         let holds_semicolons = |open: usize| {
             let before = open.checked_sub(1).map(|i| self.tokens[i]);
             before.is_some_and(|token| matches!(&self.text[token.start..token.end], "for" | "."))
         };
         let is_broken = |open: usize| {
-            self.text[self.tokens[open].start..].starts_with('(') && !holds_semicolons(open)
+            let is_parenthesis = self.text[self.tokens[open].start..].starts_with('(');
+            self.is_branch[open] || (is_parenthesis && !holds_semicolons(open))
         };
         let keep = self
             .open
@@ -155,6 +189,33 @@ impl<'t> Pairing<'t> {
         let is_first = token.start == 0 || self.text[..token.start].ends_with('\n');
         is_first && DECLARATION_WORDS.contains(&text)
     }
+}
+
+/// Which tokens open a branch on the right-hand side of a rule: `[` behind an arrow, before the rule's `;`.
+fn branches(text: &str, tokens: &[Token]) -> Vec<bool> {
+    let mut found = vec![false; tokens.len()];
+    // Whether an arrow came before, at the top and in each open bracket.
+    let mut is_right = vec![false];
+    for (i, token) in tokens.iter().enumerate() {
+        let here = is_right.last().copied().unwrap_or(false);
+        match &text[token.start..token.end] {
+            "[" => {
+                found[i] = here;
+                is_right.push(here);
+            }
+            "(" | "{" => is_right.push(false),
+            ")" | "]" | "}" if is_right.len() > 1 => {
+                is_right.pop();
+            }
+            arrow @ ("==>" | "==>>" | ";") => {
+                if let Some(last) = is_right.last_mut() {
+                    *last = arrow != ";";
+                }
+            }
+            _ => {}
+        }
+    }
+    found
 }
 
 impl Fault {
@@ -196,7 +257,7 @@ impl Fault {
             Self::Stray { close } => {
                 let message = format!("`{}` closes nothing", word(close));
                 Diagnostic::error("stray-bracket", span(close), message)
-                    .label("no bracket is open here")
+                    .label("one bracket too many")
                     .hint("remove it, or add the bracket it should close")
             }
         }

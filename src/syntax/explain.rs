@@ -50,6 +50,7 @@ pub(super) fn explain(
         .or_else(|| here.misplaced())
         .or_else(|| here.wrong_word())
         .or_else(|| before.wrong_word())
+        .or_else(|| here.code_without_braces())
         .or_else(|| before.condition_without_comma());
     let alone = |diagnostic| Explanation {
         diagnostic,
@@ -108,9 +109,7 @@ impl Case<'_, '_> {
     fn noun(&self) -> &'static str {
         match self.unit {
             Unit::Item => "declaration",
-            Unit::RuleItem if self.cutter.has(self.tokens.start, self.tokens.end, &ARROWS) => {
-                "rule"
-            }
+            Unit::RuleItem if self.cutter.has(self.tokens.start, self.at, &ARROWS) => "rule",
             Unit::Statement | Unit::RuleItem => "statement",
         }
     }

@@ -160,6 +160,27 @@ impl Case<'_, '_> {
         }
     }
 
+    /// `A ==> B  n = n + 1;`: code on the right-hand side without braces.
+    pub(super) fn code_without_braces(&self) -> Option<Diagnostic> {
+        const ASSIGNMENTS: [&str; 12] = [
+            "=", "+=", "-=", "*=", "/=", "%=", "**=", "++", "--", ":=", "|=", "&=",
+        ];
+        let is_code = self.unit == Unit::RuleItem
+            && ASSIGNMENTS.contains(&self.word(self.at))
+            && self
+                .cutter
+                .has(self.tokens.start, self.at, &["==>", "==>>"]);
+        is_code.then(|| {
+            self.error(
+                "code-without-braces",
+                self.span(self.at),
+                "an assignment cannot stand on the right-hand side of a rule",
+            )
+            .hint("put code into braces: `A ==> B { n = n + 1; };`")
+            .hint("or write `::>` for a rule that only runs code: `a:A ::> a[n] = 2;`")
+        })
+    }
+
     /// Whether `new T(…)` stands right before.
     fn follows_new(&self) -> bool {
         let Some(close) = self.at.checked_sub(1).filter(|&i| self.word(i) == ")") else {
