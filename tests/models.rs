@@ -45,3 +45,8 @@ fn maize() {
 fn greenhouse() {
     insta::assert_snapshot!(facts("greenhouse", "45"));
 }
+
+#[test]
+fn orchard() {
+    insta::assert_snapshot!(facts("orchard", "4"));
+}
