@@ -256,3 +256,42 @@ fn classes_work_as_in_java() {
                     p = (1.0,0.0) (3.0,4.0)\nnull: null\n";
     assert_eq!(printed_by(CLASSES).unwrap(), expected);
 }
+
+const REPEATED: &str = r#"
+module A(int v) { void hop() { print(v + " "); } }
+protected void init() {
+	[ Axiom ==> A(1) A(2); ]
+	derive();
+	(* A *).hop();
+	(* A *)[v] += 3;
+	((* A *)).hop();
+	println((* A *)[v]);
+	(* A *)[v]++;
+	(* a:A, (a.v > 5) *).v = 9;
+	(* A *).hop();
+	int s = 0;
+	s += (* A *).v;
+	s *= (2:3);
+	println(s);
+	(* A *)[v] :+= 10;
+	derive();
+	(* A *).hop();
+	(* A(0) *).hop();
+}
+"#;
+
+/// A statement with a query in it is a loop, as in XL; one that would keep the last value only is refused.
+#[test]
+fn statements_are_done_for_each_value() {
+    let expected = "1 2 4 5 4\n5\n5 9 84\n15 19 ";
+    assert_eq!(printed_by(REPEATED).unwrap(), expected);
+    let slips = ["int s = 0; s = (* A *).v;", "int s = (* A *).v;", "(* A *);"];
+    for slip in slips {
+        let text = REPEATED.replace("(* A(0) *).hop();", slip);
+        let error = printed_by(&text).expect_err(slip);
+        assert!(
+            error.contains("several values") || error.contains("does nothing"),
+            "{slip}: {error}"
+        );
+    }
+}

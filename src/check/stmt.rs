@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::constant;
-use super::context::{Label, Local};
+use super::context::{Collector, Label, Local};
 use super::model::{Expr, Sequence, Slot, Stmt, StmtKind, Type};
 use crate::diag::{Diagnostic, Span};
 use crate::library::ClassId;
@@ -132,7 +132,18 @@ impl Checker<'_> {
                 | ast::ExprKind::Comma(_)
                 | ast::ExprKind::Broken
         );
-        let checked = self.expr(e)?;
+        // A query or a range in it makes it a loop: `(* Leaf *).grow();` is done for every leaf.
+        let wanted = if repeats(e) {
+            Collector::Open
+        } else {
+            Collector::Closed
+        };
+        self.cx.open();
+        let outer = std::mem::replace(&mut self.cx.collector, wanted);
+        let checked = self.expr(e);
+        let found = std::mem::replace(&mut self.cx.collector, outer);
+        self.cx.close();
+        let checked = checked?;
         if !does_something {
             self.report(
                 Diagnostic::error("no-effect", e.span, "this statement does nothing")
@@ -140,7 +151,19 @@ impl Checker<'_> {
             );
             return None;
         }
-        Some(StmtKind::Expr(checked))
+        let Collector::Found(sequence, slot) = found else {
+            return Some(StmtKind::Expr(checked));
+        };
+        let body = Stmt {
+            kind: StmtKind::Expr(checked),
+            span: e.span,
+        };
+        Some(StmtKind::ForEach {
+            label: None,
+            slot: Some(slot),
+            sequence,
+            body: Box::new(body),
+        })
     }
 
     /// `int a = 1, b;`: one statement per variable.
@@ -461,5 +484,25 @@ impl Checker<'_> {
             catches: handlers,
             finally,
         }
+    }
+}
+
+/// Whether a statement may be done for each of several values. `x = (* Leaf *).area;` would keep the last one only: that is
+/// taken for a slip.
+fn repeats(e: &ast::Expr) -> bool {
+    match &e.kind {
+        ast::ExprKind::Assign(None, target, _) => begins_with_query(target),
+        _ => true,
+    }
+}
+
+/// Whether an expression is an attribute or a member of what a query finds.
+fn begins_with_query(e: &ast::Expr) -> bool {
+    match &e.kind {
+        ast::ExprKind::Query(_) => true,
+        ast::ExprKind::Member(object, _) | ast::ExprKind::Index(object, _) => {
+            begins_with_query(object)
+        }
+        _ => false,
     }
 }

@@ -243,7 +243,8 @@ impl Builder<'_> {
 
     /// Fills a new node with what its constructor is called with.
     fn fill(&mut self, part: u32, new: &NewNode, span: Span) -> Option<()> {
-        if !new.args.iter().all(|arg| self.is_plain(arg)) {
+        // A constructor that the model wrote is code of its own.
+        if new.constructor.is_some() || !new.args.iter().all(|arg| self.is_plain(arg)) {
             return None;
         }
         let Some(module) = self.scope.module_of(new.type_id) else {
@@ -305,7 +306,7 @@ impl Builder<'_> {
             StmtKind::Block(body) => body
                 .iter()
                 .try_for_each(|stmt| self.construct_by(part, stmt, params, depth)),
-            StmtKind::SuperConstructor(new) => {
+            StmtKind::SuperConstructor(new) if new.constructor.is_none() => {
                 let args: Option<Vec<Origin>> = new
                     .args
                     .iter()
