@@ -285,7 +285,11 @@ protected void init() {
 fn statements_are_done_for_each_value() {
     let expected = "1 2 4 5 4\n5\n5 9 84\n15 19 ";
     assert_eq!(printed_by(REPEATED).unwrap(), expected);
-    let slips = ["int s = 0; s = (* A *).v;", "int s = (* A *).v;", "(* A *);"];
+    let slips = [
+        "int s = 0; s = (* A *).v;",
+        "int s = (* A *).v;",
+        "(* A *);",
+    ];
     for slip in slips {
         let text = REPEATED.replace("(* A(0) *).hop();", slip);
         let error = printed_by(&text).expect_err(slip);

@@ -175,14 +175,20 @@ fn limits_stop_both_ways_at_the_same_place() {
 #[test]
 fn written_constructors_run() {
     let source = "module A(float x) { int n = 5; A(float x, float y) { this.x = x + y; n = 9; println(n); } }
-        module B(float x) extends A { B() { super(x, 2); } }
+        module B(float y) extends A(y, 2);
         module C(super.length) extends F(length) { C(float a, float b) { length = a * b; } }
         protected void init() [ Axiom ==> A(1, 2) A(4) B(3) C(2, 3) C(7); ]
         public void run() [ A(x) ==> A(x, 1) C(x, x); ]";
     assert_same(source, 2, Limits::default());
     let seen = run(source, 1, Limits::default(), true).unwrap();
-    assert!(seen[0].contains("A(3)") && seen[0].contains("C(6)"), "{seen:?}");
-    assert!(seen[0].contains("A(4)") && seen[0].contains("C(7)"), "{seen:?}");
+    assert!(
+        seen[0].contains("A(3)") && seen[0].contains("C(6)"),
+        "{seen:?}"
+    );
+    assert!(
+        seen[0].contains("A(4)") && seen[0].contains("C(7)"),
+        "{seen:?}"
+    );
 }
 
 /// A right-hand side.
