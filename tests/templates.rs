@@ -191,6 +191,27 @@ fn written_constructors_run() {
     );
 }
 
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, report) = (folder.path().join("m.rgg"), folder.path().join("r.json"));
+    let source = "protected void init() [ Axiom ==> F(1); ]
+        public void run() [ F(x) ==> F(x * random(0.3, 0.4)) RU(irandom(50, 70)) F(x / 3) [M F(x)] RU(-120) F; ]";
+    std::fs::write(&model, source).unwrap();
+    let hash = |threads: &str| {
+        let mut command = assert_cmd::Command::cargo_bin("understory").unwrap();
+        command.args(["derive", "--steps", "8", "--threads", threads, "--json"]);
+        command.arg(&report).arg(&model).assert().success();
+        let report = std::fs::read_to_string(&report).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert!(report["total"].as_u64().unwrap() > 3 << 13, "{report}");
+        report["hash"].clone()
+    };
+    let single = hash("1");
+    assert!(single.is_string() || single.is_number(), "{single}");
+    assert_eq!([hash("2"), hash("3")], [single.clone(), single]);
+}
+
 /// A right-hand side.
 fn right_side() -> impl Strategy<Value = String> {
     let node = prop_oneof![

@@ -62,6 +62,12 @@ impl Shell {
         work: impl FnOnce() -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
         let n_threads = options.threads.value.map_or(0, |threads| threads.0.get());
+        // A model runs on a thread of its own with a deep stack, outside the pool below; what it does in parallel uses the
+        // global one. Only the first call in a process can set that, which does no harm.
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(n_threads)
+            .build_global()
+            .ok();
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(n_threads)
             .stack_size(STACK)

@@ -147,21 +147,33 @@ impl Code {
 
     /// The same computation, its value dropped.
     pub fn into_void(self) -> Eval<()> {
-        fn dropped<T: Kind>(source: Source<T>) -> Eval<()> {
+        self.followed_by(())
+    }
+
+    /// The same computation as a statement.
+    pub fn into_exec(self) -> Exec {
+        self.followed_by(Flow::Next)
+    }
+
+    fn followed_by<R: Copy + Send + Sync + 'static>(self, result: R) -> Eval<R> {
+        fn followed<T: Kind, R: Copy + Send + Sync + 'static>(
+            source: Source<T>,
+            result: R,
+        ) -> Eval<R> {
             match source {
-                Source::Constant(_) | Source::Local(_) => Box::new(|_, _| Ok(())),
-                Source::Code(code) => Box::new(move |p, m| code(p, m).map(drop)),
+                Source::Constant(_) | Source::Local(_) => Box::new(move |_, _| Ok(result)),
+                Source::Code(code) => Box::new(move |p, m| code(p, m).map(|_| result)),
             }
         }
         match self {
-            Self::Void(code) => code,
-            Self::Boolean(s) => dropped(s),
-            Self::Int(s) => dropped(s),
-            Self::Long(s) => dropped(s),
-            Self::Float(s) => dropped(s),
-            Self::Double(s) => dropped(s),
-            Self::Node(s) => dropped(s),
-            Self::Value(s) => dropped(s),
+            Self::Void(code) => Box::new(move |p, m| code(p, m).map(|()| result)),
+            Self::Boolean(s) => followed(s, result),
+            Self::Int(s) => followed(s, result),
+            Self::Long(s) => followed(s, result),
+            Self::Float(s) => followed(s, result),
+            Self::Double(s) => followed(s, result),
+            Self::Node(s) => followed(s, result),
+            Self::Value(s) => followed(s, result),
         }
     }
 }

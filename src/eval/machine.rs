@@ -222,6 +222,12 @@ impl Machine {
         Err(Trap::limit("step-limit", message, hint, Some(span)))
     }
 
+    /// Counts `n` matches of the query at `span`, each tried and found.
+    pub fn spend_matches(&mut self, n: usize, span: Span) -> Result<(), Trap> {
+        let n = u32::try_from(n.saturating_mul(2)).unwrap_or(u32::MAX);
+        self.spend_visits(n, span)
+    }
+
     #[cold]
     fn check_budget(&mut self, span: Span) -> Result<(), Trap> {
         if self.has_budget(span)? {

@@ -77,9 +77,18 @@ pub(super) fn extend<T: Send>(
     length: usize,
     item: impl Fn(usize, usize) -> T + Sync,
 ) {
-    if length > 0 {
+    if length == 1 {
+        let all = (0..n).into_par_iter().with_min_len(MIN_SHARE);
+        items.par_extend(all.map(|i| item(i, 0)));
+    } else if length > 1 {
+        // A division of numbers below 2^32 as a multiplication by the rounded-up inverse; exact, see Lemire, Kaser and
+        // Kurz, Faster remainder by direct computation, 2019.
+        let inverse = u64::MAX / length as u64 + 1;
         let all = (0..n * length).into_par_iter().with_min_len(MIN_SHARE);
-        items.par_extend(all.map(|i| item(i / length, i % length)));
+        items.par_extend(all.map(|i| {
+            let group = ((u128::from(inverse) * i as u128) >> 64) as usize;
+            item(group, i - group * length)
+        }));
     }
 }
 
@@ -143,6 +152,17 @@ mod tests {
         assert_eq!((arena.get(a + 1), arena.len()), (8, 4));
         let c = arena.allocate(&[7, 8, 9]);
         assert_eq!(c, 4);
+    }
+
+    #[test]
+    fn groups_are_numbered_exactly() {
+        for length in [1, 2, 3, 7, 10, 4097] {
+            let mut items = vec![(9, 9)];
+            let n = (1 << 17) / length + 3;
+            extend(&mut items, n, length, |group, at| (group, at));
+            let wanted = (0..n).flat_map(|group| (0..length).map(move |at| (group, at)));
+            assert!(items[1..].iter().copied().eq(wanted));
+        }
     }
 
     #[test]

@@ -86,7 +86,7 @@ impl Extents {
         self.by_type[usize::from(ty.0)].places.len()
     }
 
-    fn exactly(&self, ty: TypeId) -> impl Iterator<Item = usize> {
+    pub(super) fn exactly(&self, ty: TypeId) -> impl Iterator<Item = usize> {
         let places = &self.by_type[usize::from(ty.0)].places;
         places
             .iter()

@@ -4,7 +4,7 @@
 //! its own conversions before it comes here.
 
 use super::store::{Graph, GraphError, HAS_SIDE, SideValue};
-use super::{FieldId, FieldKind, NodeId, Payload, Storage};
+use super::{FieldId, FieldKind, NodeId, Payload, Storage, TypeId};
 
 impl<O: Payload> Graph<O> {
     /// An integer field (boolean: 0 or 1).
@@ -94,6 +94,31 @@ impl<O: Payload> Graph<O> {
             self.nodes[index].flags & HAS_SIDE != 0
                 && self.side.contains_key(&(index as u32, field.0))
         })
+    }
+
+    /// Calls `visit` with the words of a field of every node of type `ty`, in the order of [`Graph::extent`]; one word of
+    /// them counts, or both for kinds of two words. `false`, and no call, for rare fields.
+    pub fn scan(&self, ty: TypeId, field: FieldId, mut visit: impl FnMut([u32; 2])) -> bool {
+        let Some(declared) = self.types[ty].fields.get(usize::from(field.0)) else {
+            return false;
+        };
+        // Fields keep their places in types that extend others.
+        let Storage::Words(offset) = declared.storage else {
+            return false;
+        };
+        let is_wide = declared.kind.words() == 2;
+        for &ty in self.types[ty].descendants() {
+            for index in self.extents.exactly(ty) {
+                let place = self.word_place(index, offset);
+                let high = if is_wide {
+                    self.words.get(place + 1)
+                } else {
+                    0
+                };
+                visit([self.words.get(place), high]);
+            }
+        }
+        true
     }
 
     /// Sets an integer field.

@@ -4,7 +4,7 @@ use super::arena::{NIL, extend};
 use super::links::{Link, Links};
 use super::store::{CONSUMED, Graph, GraphError, Header, INSERTED, MOST_NODES, MOST_WORDS};
 use super::template::{Batch, Template};
-use super::{NodeId, Payload};
+use super::{NodeId, Payload, TypeId};
 
 /// Which places new nodes get: vacant ones first, those vacated last first, then new ones.
 struct Places {
@@ -27,8 +27,21 @@ struct Copying<'a> {
     batch: &'a Batch,
     /// Number of its first node among all new ones.
     first: usize,
-    /// Where the nodes of the last match begin in the extents of the template's types.
-    extent_starts: Vec<u32>,
+    /// The template's nodes, made ready.
+    parts: Vec<Part>,
+}
+
+/// A node of a template, made ready for copying. Other nodes are told by their numbers in the template.
+struct Part {
+    type_id: TypeId,
+    flags: u16,
+    /// Where its words begin in those of the template; [`NIL`] if it has none.
+    first_word: u32,
+    first_out: u32,
+    link: Link,
+    /// Place in the extent of the copy for the first match, and how far before it the one for the next match is.
+    extent_place: u32,
+    extent_stride: u32,
 }
 
 impl Copying<'_> {
@@ -37,27 +50,53 @@ impl Copying<'_> {
     }
 
     /// The header of node `part` of match `number`; `place` tells the places of the nodes of this match.
+    #[inline]
     fn header(&self, number: usize, part: usize, words: u32, place: impl Fn(u32) -> u32) -> Header {
-        let template = self.template();
-        let part = &template.parts[part];
-        let n_same = template.by_type[part.entry as usize].1.len();
-        let matches_after = self.batch.matched.len() - 1 - number;
-        let at = matches_after * n_same + (n_same - 1 - part.rank as usize);
-        let or_nil = |part: Option<u32>| part.map_or(NIL, &place);
+        let part = &self.parts[part];
+        let placed = |part: u32| if part == NIL { NIL } else { place(part) };
         Header {
             type_id: part.type_id,
             flags: part.flags,
             generation: 0,
             words,
+            first_out: placed(part.first_out),
+            link: Link {
+                from: placed(part.link.from),
+                next_out: placed(part.link.next_out),
+                previous_out: place(part.link.previous_out),
+            },
+            extent_place: part.extent_place - number as u32 * part.extent_stride,
+        }
+    }
+}
+
+/// The nodes of a template for `n_matches` matches, made ready; `starts` tells where the copies of each type begin in
+/// its extent.
+fn ready(template: &Template, n_matches: usize, starts: &[usize]) -> Vec<Part> {
+    let or_nil = |part: Option<u32>| part.unwrap_or(NIL);
+    let parts = template.parts.iter().map(|part| {
+        let entry = part.entry as usize;
+        let n_same = template.by_type[entry].1.len();
+        let last = (n_matches * n_same).saturating_sub(1 + part.rank as usize);
+        Part {
+            type_id: part.type_id,
+            flags: part.flags,
+            first_word: if part.n_words == 0 {
+                NIL
+            } else {
+                part.first_word
+            },
             first_out: or_nil(part.first_out),
             link: Link {
                 from: or_nil(part.parent),
                 next_out: or_nil(part.next_out),
-                previous_out: place(part.previous_out),
+                previous_out: part.previous_out,
             },
-            extent_place: self.extent_starts[part.entry as usize] + at as u32,
+            extent_place: (starts[entry] + last) as u32,
+            extent_stride: n_same as u32,
         }
-    }
+    });
+    parts.collect()
 }
 
 impl<O: Payload> Graph<O> {
@@ -123,16 +162,18 @@ impl<O: Payload> Graph<O> {
         let mut after = batches.iter().map(Batch::n_nodes).sum::<usize>();
         for batch in batches.iter().rev() {
             after -= batch.n_nodes();
-            let extent_starts = batch.template.by_type.iter().map(|(ty, same)| {
+            let n_matches = batch.matched.len();
+            let starts = batch.template.by_type.iter().map(|(ty, same)| {
                 let end = &mut ends[usize::from(ty.0)];
                 let start = self.extents.n_places_of(*ty) + *end;
-                *end += same.len() * batch.matched.len();
-                start as u32
+                *end += same.len() * n_matches;
+                start
             });
+            let starts: Vec<usize> = starts.collect();
             copyings.push(Copying {
                 batch,
                 first: after,
-                extent_starts: extent_starts.collect(),
+                parts: ready(&batch.template, n_matches, &starts),
             });
         }
         copyings.reverse();
@@ -157,11 +198,9 @@ impl<O: Payload> Graph<O> {
         let first_node = self.nodes.len() as u32;
         extend(&mut self.nodes, n_bulk, n_parts, |number, part| {
             let base = first_node + (number * n_parts) as u32;
-            let part_words = &template.parts[part];
-            let words = if part_words.n_words == 0 {
-                0
-            } else {
-                first_word + (number * n_words) as u32 + part_words.first_word
+            let words = match copying.parts[part].first_word {
+                NIL => 0,
+                word => first_word + (number * n_words) as u32 + word,
             };
             copying.header(n_single + number, part, words, |part| base + part)
         });

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::sequences::{Iterate, Turn, read_place};
 use super::{Scope, arrays, convert};
-use crate::check::model::{Aggregate, Expr, Selection, Sequence, Slot, Type};
+use crate::check::model::{Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Type};
 use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::array::{Array, Elements};
@@ -12,7 +12,8 @@ use crate::eval::code::{Code, FromCode, Source};
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
-use crate::graph::NodeId;
+use crate::graph::pattern::Candidate;
+use crate::graph::{FieldId, FieldKind, NodeId, Storage, TypeId};
 use crate::library::ClassId;
 
 /// Elements of a list that grows are counted in this unit by the memory budget.
@@ -21,6 +22,9 @@ const GROWTH: usize = 1024;
 impl Scope<'_> {
     pub(super) fn aggregate(&self, aggregate: Aggregate, sequence: &Sequence, e: &Expr) -> Code {
         let ty = self.element_type(sequence);
+        if let Some(code) = self.whole(aggregate, sequence, &ty, e) {
+            return code;
+        }
         let place = self.element_place(&ty);
         let (Local::Word(at) | Local::Value(at)) = place;
         let elements = self.sequence(sequence, Some(place));
@@ -50,6 +54,57 @@ impl Scope<'_> {
             Aggregate::Array => collected(elements, &ty, place, e.span),
             Aggregate::String => joined(elements, &ty, place, e.span),
         }
+    }
+
+    /// What can be told of all nodes of a type without going from match to match: how many they are, and sums and the like
+    /// of a field.
+    fn whole(
+        &self,
+        aggregate: Aggregate,
+        sequence: &Sequence,
+        ty: &Type,
+        e: &Expr,
+    ) -> Option<Code> {
+        if aggregate == Aggregate::Count {
+            let (ty, span) = all_nodes(sequence)?;
+            return Some(Code::Long(Source::code(move |_, m| {
+                let n = m.graph.count(ty);
+                m.spend_matches(n, span)?;
+                Ok(n as i64)
+            })));
+        }
+        let Sequence::Map { source, slot, body } = sequence else {
+            return None;
+        };
+        let ExprKind::Read(Place::Field(of, field)) = &body.kind else {
+            return None;
+        };
+        if !matches!(&of.kind, ExprKind::Read(Place::Local(read)) if read == slot) {
+            return None;
+        }
+        let (of, span) = all_nodes(source)?;
+        let declared = self.model.types[of].fields.get(usize::from(field.0))?;
+        let column = Column {
+            of,
+            field: *field,
+            span: e.span,
+            query: span,
+        };
+        let is_folded = matches!(
+            aggregate,
+            Aggregate::Sum | Aggregate::Prod | Aggregate::Min | Aggregate::Max | Aggregate::Mean
+        );
+        if !is_folded || declared.storage == Storage::Side {
+            return None;
+        }
+        let code = match (declared.kind, ty) {
+            (FieldKind::Float, Type::Float) => column.folded::<f32>(aggregate),
+            (FieldKind::Double, Type::Double) => column.folded::<f64>(aggregate),
+            (FieldKind::Long, Type::Long) => column.folded::<i64>(aggregate),
+            (FieldKind::Int, Type::Int) => column.folded::<i32>(aggregate),
+            _ => return None,
+        };
+        Some(convert::number(code, &e.ty))
     }
 
     /// `selectWhereMin` and `selectWhereMax`: of several elements whose key is extreme the last; `selectWhere`: the first
@@ -172,6 +227,8 @@ trait Number: Access + Copy + PartialOrd {
     const GREATEST: Self;
     fn plus(self, other: Self) -> Self;
     fn times(self, other: Self) -> Self;
+    /// The number that these words of a field are.
+    fn from_words(words: [u32; 2]) -> Self;
     /// The mean of `n` numbers with this sum.
     fn over(self, n: i64, span: Span) -> Result<Self, Trap>;
 }
@@ -192,6 +249,10 @@ macro_rules! whole_number {
                 self.wrapping_mul(other)
             }
 
+            fn from_words([low, high]: [u32; 2]) -> Self {
+                (u64::from(low) | u64::from(high) << 32) as Self
+            }
+
             fn over(self, n: i64, span: Span) -> Result<Self, Trap> {
                 if n == 0 {
                     return Err(Trap::exception(ClassId::ArithmeticException, "/ by zero", span));
@@ -204,7 +265,7 @@ macro_rules! whole_number {
 whole_number!(i32, i64);
 
 macro_rules! floating_number {
-    ($($ty:ty),*) => {$(
+    ($($ty:ty, $from_words:expr;)*) => {$(
         impl Number for $ty {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -219,13 +280,74 @@ macro_rules! floating_number {
                 self * other
             }
 
+            fn from_words(words: [u32; 2]) -> Self {
+                $from_words(words)
+            }
+
             fn over(self, n: i64, _: Span) -> Result<Self, Trap> {
                 Ok(self / n as Self)
             }
         }
     )*};
 }
-floating_number!(f32, f64);
+floating_number! {
+    f32, |[low, _]: [u32; 2]| f32::from_bits(low);
+    f64, |[low, high]: [u32; 2]| f64::from_bits(u64::from(low) | u64::from(high) << 32);
+}
+
+/// The type of a query for all nodes of a type, and its place.
+fn all_nodes(sequence: &Sequence) -> Option<(TypeId, Span)> {
+    let Sequence::Query { pattern, .. } = sequence else {
+        return None;
+    };
+    let [node] = pattern.nodes.as_slice() else {
+        return None;
+    };
+    let Candidate::Type(ty) = node.what else {
+        return None;
+    };
+    let is_free = node.args.is_empty() && pattern.edges.is_empty() && pattern.conditions.is_empty();
+    is_free.then_some((ty, pattern.span))
+}
+
+/// A field of all nodes of a type.
+#[derive(Clone, Copy)]
+struct Column {
+    of: TypeId,
+    field: FieldId,
+    span: Span,
+    query: Span,
+}
+
+impl Column {
+    fn folded<T: Number>(self, aggregate: Aggregate) -> Code {
+        let (start, step) = steps::<T>(aggregate);
+        let is_mean = aggregate == Aggregate::Mean;
+        T::into_code(Source::code(move |_, m| {
+            let n = m.graph.count(self.of);
+            m.spend_matches(n, self.query)?;
+            let mut total = start;
+            m.graph.scan(self.of, self.field, |words| {
+                total = step(total, T::from_words(words));
+            });
+            if is_mean {
+                total.over(n as i64, self.span)
+            } else {
+                Ok(total)
+            }
+        }))
+    }
+}
+
+/// What an aggregate begins with, and what it does with each number.
+fn steps<T: Number>(aggregate: Aggregate) -> (T, fn(T, T) -> T) {
+    match aggregate {
+        Aggregate::Prod => (T::ONE, T::times),
+        Aggregate::Min => (T::GREATEST, |a, b| if b < a { b } else { a }),
+        Aggregate::Max => (T::LEAST, |a, b| if b > a { b } else { a }),
+        _ => (T::ZERO, T::plus),
+    }
+}
 
 fn fold(aggregate: Aggregate, elements: Iterate, ty: &Type, at: u32, span: Span) -> Code {
     match ty {
@@ -237,12 +359,7 @@ fn fold(aggregate: Aggregate, elements: Iterate, ty: &Type, at: u32, span: Span)
 }
 
 fn folded<T: Number>(aggregate: Aggregate, elements: Iterate, at: u32, span: Span) -> Code {
-    let (start, step): (T, fn(T, T) -> T) = match aggregate {
-        Aggregate::Prod => (T::ONE, T::times),
-        Aggregate::Min => (T::GREATEST, |a, b| if b < a { b } else { a }),
-        Aggregate::Max => (T::LEAST, |a, b| if b > a { b } else { a }),
-        _ => (T::ZERO, T::plus),
-    };
+    let (start, step) = steps::<T>(aggregate);
     let is_mean = aggregate == Aggregate::Mean;
     T::into_code(Source::code(move |p, m| {
         let (mut total, mut n) = (start, 0_i64);

@@ -9,6 +9,7 @@ use crate::eval::code::{Code, Source};
 use crate::eval::library::{Behaviour, Context, Maker, Native, constructor, function, method};
 use crate::eval::machine::Machine;
 use crate::eval::program::Program;
+use crate::eval::random::JavaRandom;
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
 use crate::library::{ClassId, ConstructorId, FunctionId, MethodId};
@@ -18,7 +19,41 @@ const MAX_ARGUMENTS: usize = 9;
 
 impl Scope<'_> {
     pub(super) fn library_function(&self, id: FunctionId, args: &[Expr], e: &Expr) -> Code {
-        self.behave(function(id), args, &e.ty, e.span)
+        match id {
+            FunctionId::Random => Code::Float(self.drawn(args, |random, low, high| {
+                random.next_float() * (high - low) + low
+            })),
+            FunctionId::NormalFloat => Code::Float(self.drawn(args, |random, mean, deviation| {
+                random.next_gaussian() as f32 * deviation + mean
+            })),
+            FunctionId::NormalDouble => {
+                Code::Double(self.drawn(args, |random, mean, deviation| {
+                    random.next_gaussian() * deviation + mean
+                }))
+            }
+            FunctionId::Probability => {
+                let p = self.argument::<f32>(args, 0);
+                Code::Boolean(Source::code(move |program, machine| {
+                    let p = p.get(program, machine)?;
+                    Ok(p >= 1.0 || machine.random.next_float() < p)
+                }))
+            }
+            id => self.behave(function(id), args, &e.ty, e.span),
+        }
+    }
+
+    /// A number drawn with two parameters: the functions of the library that rules use most, without boxes.
+    fn drawn<T: Access>(
+        &self,
+        args: &[Expr],
+        draw: impl Fn(&mut JavaRandom, T, T) -> T + Send + Sync + 'static,
+    ) -> Source<T> {
+        let (first, second) = (self.argument(args, 0), self.argument(args, 1));
+        Source::code(move |program, machine| {
+            let first = first.get(program, machine)?;
+            let second = second.get(program, machine)?;
+            Ok(draw(&mut machine.random, first, second))
+        })
     }
 
     pub(super) fn library_method(

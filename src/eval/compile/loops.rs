@@ -23,7 +23,7 @@ impl Scope<'_> {
         let (own, is_do, span) = (*label, *is_do, s.span);
         let init = self.block(init);
         let cond = cond.as_ref().map(|c| self.boolean(c));
-        let update: Vec<Eval<()>> = update.iter().map(|e| self.expr(e).into_void()).collect();
+        let update: Vec<Eval<()>> = update.iter().map(|e| self.effect(e).into_void()).collect();
         let body = self.statement(body);
         Box::new(move |p, m| {
             init(p, m)?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::Scope;
 use super::convert::{is_primitive, number};
 use super::operators::combine;
-use crate::check::model::{Expr, Operator, Place, StaticId, Type};
+use crate::check::model::{Expr, ExprKind, Operator, Place, StaticId, Type};
 use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::code::{Code, Source};
@@ -34,7 +34,27 @@ enum Target {
     /// A field of an object of a class of the model.
     Slot(Source<Value>, Field),
     Element(Source<Value>, Source<i32>),
+    /// An element of an array that a variable holds and goes on holding while index and value are computed.
+    HeldElement(Held, Source<i32>),
     Member(Source<Value>, Getter, Setter),
+}
+
+/// The variable that holds an array.
+#[derive(Clone, Copy)]
+enum Held {
+    Local(u32),
+    Static(u32),
+}
+
+impl Held {
+    /// The array where it stands; no reference is counted.
+    #[inline]
+    fn array(self, m: &Machine) -> &Value {
+        match self {
+            Self::Local(at) => m.stack.value(at),
+            Self::Static(at) => &m.statics.values[at as usize],
+        }
+    }
 }
 
 /// Calls a generic method with the kind of values that variables of a type are computed in.
@@ -54,7 +74,8 @@ macro_rules! with_kind {
 pub(super) use with_kind;
 
 impl Scope<'_> {
-    fn target(&self, place: &Place) -> Target {
+    /// A place to which something is done while `others` are evaluated.
+    fn target(&self, place: &Place, others: &[&Expr]) -> Target {
         match place {
             Place::Local(slot) => Target::Local(self.local(*slot)),
             Place::Static(StaticId(id)) => Target::Static(self.static_local(*id)),
@@ -64,10 +85,34 @@ impl Scope<'_> {
             Place::Field(node, field) => {
                 Target::Field(self.node(node), self.field(&node.ty, *field))
             }
-            Place::Element(array, index) => Target::Element(self.value(array), self.int(index)),
+            Place::Element(array, index) => {
+                let is_still = is_still(index) && others.iter().all(|other| is_still(other));
+                match self.held(array).filter(|_| is_still) {
+                    Some(held) => Target::HeldElement(held, self.int(index)),
+                    None => Target::Element(self.value(array), self.int(index)),
+                }
+            }
             Place::Member(object, get, set) => {
                 Target::Member(self.value(object), getter(*get), setter(*set))
             }
+        }
+    }
+
+    /// The variable that an expression reads an object from.
+    fn held(&self, e: &Expr) -> Option<Held> {
+        let ExprKind::Read(place) = &e.kind else {
+            return None;
+        };
+        match place {
+            Place::Local(slot) => match self.local(*slot) {
+                Local::Value(at) => Some(Held::Local(at)),
+                Local::Word(_) => None,
+            },
+            Place::Static(StaticId(id)) => match self.static_local(*id) {
+                Local::Value(at) => Some(Held::Static(at)),
+                Local::Word(_) => None,
+            },
+            Place::Field(..) | Place::Element(..) | Place::Member(..) => None,
         }
     }
 
@@ -89,7 +134,7 @@ impl Scope<'_> {
     }
 
     fn read_kind<T: Access>(&self, place: &Place, span: Span) -> Code {
-        T::into_code(match self.target(place) {
+        T::into_code(match self.target(place, &[]) {
             Target::Local(Local::Word(at) | Local::Value(at)) => Source::Local(at),
             Target::Static(local) => Source::code(move |_, m| Ok(read_static(m, local))),
             Target::Field(node, field) => Source::code(move |p, m| {
@@ -104,6 +149,10 @@ impl Scope<'_> {
                 let array = array.get(p, m)?;
                 let index = index.get(p, m)?;
                 read_element(&array, index, span)
+            }),
+            Target::HeldElement(held, index) => Source::code(move |p, m| {
+                let index = index.get(p, m)?;
+                read_element(held.array(m), index, span)
             }),
             Target::Member(object, get, _) => Source::code(move |p, m| {
                 let object = object.get(p, m)?;
@@ -134,9 +183,9 @@ impl Scope<'_> {
         }
     }
 
-    fn assign_kind<T: Access>(&self, place: &Place, value: &Expr, span: Span) -> Code {
-        let value = self.source::<T>(value);
-        T::into_code(match self.target(place) {
+    fn assign_kind<T: Access>(&self, place: &Place, assigned: &Expr, span: Span) -> Code {
+        let value = self.source::<T>(assigned);
+        T::into_code(match self.target(place, &[assigned]) {
             Target::Local(Local::Word(at) | Local::Value(at)) => Source::code(move |p, m| {
                 let new = value.get(p, m)?;
                 new.clone().store(&mut m.stack, at);
@@ -164,6 +213,12 @@ impl Scope<'_> {
                 let index = index.get(p, m)?;
                 let new = value.get(p, m)?;
                 write_element(&array, index, new.clone(), span)?;
+                Ok(new)
+            }),
+            Target::HeldElement(held, index) => Source::code(move |p, m| {
+                let index = index.get(p, m)?;
+                let new = value.get(p, m)?;
+                write_element(held.array(m), index, new.clone(), span)?;
                 Ok(new)
             }),
             Target::Member(object, _, set) => Source::code(move |p, m| {
@@ -200,7 +255,7 @@ impl Scope<'_> {
     ) -> Code {
         let (ty, span) = (&result.ty, result.span);
         // A local is its own left operand; other places are read into a temporary first.
-        let target = self.target(place);
+        let target = self.target(place, &[value]);
         let old = match target {
             Target::Local(Local::Word(at) | Local::Value(at)) => at,
             _ => self.temporary(ty),
@@ -215,7 +270,7 @@ impl Scope<'_> {
 
     /// `place += text`.
     pub(super) fn append(&self, place: &Place, value: &Expr, span: Span) -> Code {
-        let target = self.target(place);
+        let target = self.target(place, &[value]);
         let old = match target {
             Target::Local(Local::Word(at) | Local::Value(at)) => at,
             _ => self.temporary(&Type::String),
@@ -244,11 +299,21 @@ impl Scope<'_> {
         result: &Expr,
     ) -> Code {
         let (ty, span) = (&result.ty, result.span);
+        if let (Place::Local(slot), Type::Int, true) = (place, ty, is_prefix)
+            && let Local::Word(at) = self.local(*slot)
+        {
+            let by = i32::from(by);
+            return Code::Int(Source::code(move |_, m| {
+                let new = i32::load(&m.stack, at).wrapping_add(by);
+                new.store(&mut m.stack, at);
+                Ok(new)
+            }));
+        }
         let old = self.temporary(ty);
         let one = number(Code::Int(Source::Constant(i32::from(by))), ty);
         let left = T::into_code(Source::Local(old));
         let new: Source<T> = T::from_code(number(combine(Operator::Add, ty, left, one, span), ty));
-        let update = modify(self.target(place), old, new, span);
+        let update = modify(self.target(place, &[]), old, new, span);
         if is_prefix {
             return T::into_code(update);
         }
@@ -298,6 +363,13 @@ fn modify<T: Access>(target: Target, old: u32, new: Source<T>, span: Span) -> So
             write_element(&array, index, new.clone(), span)?;
             Ok(new)
         }),
+        Target::HeldElement(held, index) => Source::code(move |p, m| {
+            let index = index.get(p, m)?;
+            read_element::<T>(held.array(m), index, span)?.store(&mut m.stack, old);
+            let new = new.get(p, m)?;
+            write_element(held.array(m), index, new.clone(), span)?;
+            Ok(new)
+        }),
         Target::Member(object, get, set) => Source::code(move |p, m| {
             let object = object.get(p, m)?;
             read_member::<T>(&object, get, span)?.store(&mut m.stack, old);
@@ -305,6 +377,30 @@ fn modify<T: Access>(target: Target, old: u32, new: Source<T>, span: Span) -> So
             write_member(&object, set, new.clone(), span)?;
             Ok(new)
         }),
+    }
+}
+
+/// Whether the evaluation of an expression changes no variable.
+fn is_still(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Constant(_) => true,
+        ExprKind::Read(place) => match place {
+            Place::Local(_) | Place::Static(_) => true,
+            Place::Field(of, _) | Place::Member(of, ..) => is_still(of),
+            Place::Element(array, index) => is_still(array) && is_still(index),
+        },
+        ExprKind::Convert(e)
+        | ExprKind::Negate(e)
+        | ExprKind::Complement(e)
+        | ExprKind::Not(e)
+        | ExprKind::ArrayLength(e) => is_still(e),
+        ExprKind::Binary {
+            left: a, right: b, ..
+        }
+        | ExprKind::AndThen(a, b)
+        | ExprKind::OrElse(a, b) => is_still(a) && is_still(b),
+        ExprKind::Conditional(a, b, c) => is_still(a) && is_still(b) && is_still(c),
+        _ => false,
     }
 }
 

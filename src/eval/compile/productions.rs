@@ -65,7 +65,7 @@ impl Scope<'_> {
             } => {
                 let cond = cond.as_ref().map(|c| self.boolean(c));
                 let update: Vec<Eval<()>> =
-                    update.iter().map(|e| self.expr(e).into_void()).collect();
+                    update.iter().map(|e| self.effect(e).into_void()).collect();
                 let span = self.production_span(body);
                 let (init, body) = (self.block(init), self.productions(body));
                 Box::new(move |p, m| {

@@ -2,7 +2,7 @@
 
 use super::Scope;
 use super::expressions::TypeTest;
-use crate::check::model::{Constant, Expr, Slot, Stmt, StmtKind, Type};
+use crate::check::model::{Constant, Expr, ExprKind, Slot, Stmt, StmtKind, Type};
 use crate::diag::Span;
 use crate::eval::code::{Code, Exec, Flow, Label, Source};
 use crate::eval::machine::Machine;
@@ -27,10 +27,7 @@ impl Scope<'_> {
     /// The code of a statement.
     pub(super) fn statement(&self, s: &Stmt) -> Exec {
         match &s.kind {
-            StmtKind::Expr(e) => {
-                let effect = self.expr(e).into_void();
-                Box::new(move |p, m| effect(p, m).map(|()| Flow::Next))
-            }
+            StmtKind::Expr(e) => self.effect(e).into_exec(),
             StmtKind::Local(slot, value) => self.declare(*slot, value.as_ref()),
             StmtKind::Block(body) => self.block(body),
             StmtKind::If(condition, yes, no) => self.branch(condition, yes, no.as_deref()),
@@ -84,6 +81,14 @@ impl Scope<'_> {
                     None => Ok(Flow::Next),
                 })
             }
+        }
+    }
+
+    /// An expression of which only the effect counts: `i++` is `++i` then, which keeps no old value.
+    pub(super) fn effect(&self, e: &Expr) -> Code {
+        match &e.kind {
+            ExprKind::IncDec { place, by, .. } => self.inc_dec(place, *by, true, e),
+            _ => self.expr(e),
         }
     }
 
