@@ -8,6 +8,7 @@ mod arrays;
 mod calls;
 mod convert;
 mod expressions;
+mod held;
 mod library;
 mod loops;
 mod operators;

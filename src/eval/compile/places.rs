@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::Scope;
 use super::convert::{is_primitive, number};
+use super::held::{Held, is_still};
 use super::operators::combine;
-use crate::check::model::{Expr, ExprKind, Operator, Place, StaticId, Type};
+use crate::check::model::{Expr, Operator, Place, StaticId, Type};
 use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::code::{Code, Source};
@@ -37,24 +38,6 @@ enum Target {
     /// An element of an array that a variable holds and goes on holding while index and value are computed.
     HeldElement(Held, Source<i32>),
     Member(Source<Value>, Getter, Setter),
-}
-
-/// The variable that holds an array.
-#[derive(Clone, Copy)]
-enum Held {
-    Local(u32),
-    Static(u32),
-}
-
-impl Held {
-    /// The array where it stands; no reference is counted.
-    #[inline]
-    fn array(self, m: &Machine) -> &Value {
-        match self {
-            Self::Local(at) => m.stack.value(at),
-            Self::Static(at) => &m.statics.values[at as usize],
-        }
-    }
 }
 
 /// Calls a generic method with the kind of values that variables of a type are computed in.
@@ -95,24 +78,6 @@ impl Scope<'_> {
             Place::Member(object, get, set) => {
                 Target::Member(self.value(object), getter(*get), setter(*set))
             }
-        }
-    }
-
-    /// The variable that an expression reads an object from.
-    fn held(&self, e: &Expr) -> Option<Held> {
-        let ExprKind::Read(place) = &e.kind else {
-            return None;
-        };
-        match place {
-            Place::Local(slot) => match self.local(*slot) {
-                Local::Value(at) => Some(Held::Local(at)),
-                Local::Word(_) => None,
-            },
-            Place::Static(StaticId(id)) => match self.static_local(*id) {
-                Local::Value(at) => Some(Held::Static(at)),
-                Local::Word(_) => None,
-            },
-            Place::Field(..) | Place::Element(..) | Place::Member(..) => None,
         }
     }
 
@@ -377,30 +342,6 @@ fn modify<T: Access>(target: Target, old: u32, new: Source<T>, span: Span) -> So
             write_member(&object, set, new.clone(), span)?;
             Ok(new)
         }),
-    }
-}
-
-/// Whether the evaluation of an expression changes no variable.
-fn is_still(e: &Expr) -> bool {
-    match &e.kind {
-        ExprKind::Constant(_) => true,
-        ExprKind::Read(place) => match place {
-            Place::Local(_) | Place::Static(_) => true,
-            Place::Field(of, _) | Place::Member(of, ..) => is_still(of),
-            Place::Element(array, index) => is_still(array) && is_still(index),
-        },
-        ExprKind::Convert(e)
-        | ExprKind::Negate(e)
-        | ExprKind::Complement(e)
-        | ExprKind::Not(e)
-        | ExprKind::ArrayLength(e) => is_still(e),
-        ExprKind::Binary {
-            left: a, right: b, ..
-        }
-        | ExprKind::AndThen(a, b)
-        | ExprKind::OrElse(a, b) => is_still(a) && is_still(b),
-        ExprKind::Conditional(a, b, c) => is_still(a) && is_still(b) && is_still(c),
-        _ => false,
     }
 }
 
