@@ -183,7 +183,7 @@ impl<O: Payload> Graph<O> {
     /// Writes the nodes of a batch: those that get vacant places one by one, the others in parallel.
     fn copy(&mut self, copying: &Copying<'_>, places: &Places) {
         let template = copying.template();
-        let (n_parts, n_words) = (template.len(), template.n_words());
+        let (n_parts, n_words) = (template.n_nodes(), template.n_words());
         let n_matches = copying.batch.matched.len();
         let n_vacant = places.free.len().saturating_sub(copying.first);
         let n_single = n_vacant.div_ceil(n_parts).min(n_matches);
@@ -209,7 +209,7 @@ impl<O: Payload> Graph<O> {
     /// Writes the nodes of one match.
     fn copy_one(&mut self, copying: &Copying<'_>, number: usize, places: &Places) {
         let template = copying.template();
-        let first = copying.first + number * template.len();
+        let first = copying.first + number * template.n_nodes();
         let given = copying.batch.given(number);
         let mut block = vec![];
         for (index, part) in template.parts.iter().enumerate() {
@@ -231,7 +231,7 @@ impl<O: Payload> Graph<O> {
     }
 
     fn enter_extents(&mut self, copying: &Copying<'_>, places: &Places) {
-        let (n_parts, n_matches) = (copying.template().len(), copying.batch.matched.len());
+        let (n_parts, n_matches) = (copying.template().n_nodes(), copying.batch.matched.len());
         for (ty, same) in &copying.template().by_type {
             self.extents
                 .append(*ty, n_matches, same.len(), |before, rank| {
@@ -245,7 +245,7 @@ impl<O: Payload> Graph<O> {
     fn embed(&mut self, copyings: &[Copying<'_>], places: &Places) {
         let mut ends = vec![];
         for copying in copyings {
-            let (n_parts, last) = (copying.template().len(), copying.template().last);
+            let (n_parts, last) = (copying.template().n_nodes(), copying.template().last);
             ends.extend((0..copying.batch.matched.len()).map(|number| {
                 let first = copying.first + number * n_parts;
                 (places.of(first), places.of(first + last as usize))

@@ -120,7 +120,7 @@ impl Template {
     }
 
     /// Number of nodes.
-    pub fn len(&self) -> usize {
+    pub fn n_nodes(&self) -> usize {
         self.parts.len()
     }
 
@@ -221,7 +221,7 @@ impl Batch {
 
     /// Number of new nodes.
     pub fn n_nodes(&self) -> usize {
-        self.matched.len() * self.template.len()
+        self.matched.len() * self.template.n_nodes()
     }
 
     /// The words that a match gives.

@@ -16,7 +16,7 @@ impl<O: Payload> Queue<O> {
 
     /// Whether a match of this template can be noted in bulk now: there must be room for its nodes.
     pub fn has_room_for(&self, graph: &Graph<O>, template: &Template) -> bool {
-        let n_nodes = self.n_noted_nodes + template.len();
+        let n_nodes = self.n_noted_nodes + template.n_nodes();
         let n_words = self.n_noted_words + template.n_words();
         self.takes_batches() && graph.has_room(n_nodes, n_words)
     }
@@ -30,7 +30,7 @@ impl<O: Payload> Queue<O> {
         given: &[u32],
     ) {
         graph.consume(node);
-        self.n_noted_nodes += template.len();
+        self.n_noted_nodes += template.n_nodes();
         self.n_noted_words += template.n_words();
         let last = self.batches.last();
         if !last.is_some_and(|last| Arc::ptr_eq(&last.template, template)) {
@@ -66,10 +66,10 @@ impl<O: Payload> Queue<O> {
     ) -> Result<(), GraphError> {
         let (template, given) = (&*batch.template, batch.given(number));
         nodes.clear();
-        for part in 0..template.len() as u32 {
+        for part in 0..template.n_nodes() as u32 {
             nodes.push(graph.create_part(template, part, given)?);
         }
-        let edges = (0..template.len() as u32).filter_map(|part| {
+        let edges = (0..template.n_nodes() as u32).filter_map(|part| {
             let (parent, bits) = template.parent(part)?;
             Some((nodes[parent as usize], nodes[part as usize], bits))
         });

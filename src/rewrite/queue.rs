@@ -134,7 +134,7 @@ impl<O: Payload> Queue<O> {
 
     /// Whether nothing is queued but matches noted in bulk.
     pub(super) fn has_no_operations(&self) -> bool {
-        self.mark().0 == [0; 7] && self.assignments.is_empty()
+        self.mark().0.iter().all(|&n| n == 0) && self.assignments.is_empty()
     }
 
     /// Whether the match just found shall be applied; asked before [`Queue::begin`]. In random sequential mode a later
