@@ -6,7 +6,9 @@
 
 use super::Checker;
 use super::context::Collector;
-use super::model::{Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Type};
+use super::model::{
+    Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Stmt, StmtKind, Type,
+};
 use super::names::Target;
 use super::types::{is_numeric, promote};
 use crate::diag::{Diagnostic, Span};
@@ -285,6 +287,28 @@ impl Checker<'_> {
         Some(self.collect(sequence, Type::Node(ty), span))
     }
 
+    /// `(* X *)[v] += 1;`, `(* X *).f();`: the statement is run for each match.
+    pub(super) fn each_of_query(&mut self, e: &ast::Expr) -> Option<StmtKind> {
+        self.cx.open();
+        let outer = std::mem::replace(&mut self.cx.collector, Collector::Open);
+        let value = self.expr(e);
+        let found = std::mem::replace(&mut self.cx.collector, outer);
+        self.cx.close();
+        let Collector::Found(sequence, slot) = found else {
+            return None;
+        };
+        let body = Stmt {
+            kind: StmtKind::Expr(value?),
+            span: e.span,
+        };
+        Some(StmtKind::ForEach {
+            label: None,
+            slot: Some(slot),
+            sequence,
+            body: Box::new(body),
+        })
+    }
+
     /// `from:to`
     pub(super) fn range(&mut self, from: &ast::Expr, to: &ast::Expr, span: Span) -> Option<Expr> {
         if !self.may_collect("a range", span) {
@@ -327,5 +351,24 @@ impl Checker<'_> {
             is_final: true,
         };
         self.read(target, span)
+    }
+}
+
+/// Whether an expression assigns to what a query finds, or calls a method of it.
+pub(super) fn is_done_to_query(e: &ast::Expr) -> bool {
+    use ast::ExprKind as K;
+    let mut at = match &e.kind {
+        K::Assign(_, target, _) | K::Deferred(_, target, _) | K::IncDec { target, .. } => target,
+        K::Call(callee, _) => callee,
+        K::With(..) => e,
+        _ => return false,
+    };
+    loop {
+        at = match &at.kind {
+            K::Query(_) => return true,
+            K::Member(object, _) | K::Index(object, _) | K::With(object, _) => object,
+            K::Call(callee, _) => callee,
+            _ => return false,
+        };
     }
 }

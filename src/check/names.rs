@@ -263,7 +263,11 @@ impl Checker<'_> {
                 .filter(|_| owner.is_empty())
                 .find_map(|owner| library::constant(owner, name))
         };
-        let constant = library::constant(owner, name).or_else(imported)?;
+        // Derivation modes are written with and without their class.
+        let of_graph = || library::constant("Graph", name).filter(|_| owner.is_empty());
+        let constant = library::constant(owner, name)
+            .or_else(imported)
+            .or_else(of_graph)?;
         Some(Binding::Value(constant_expr(constant.value, span)))
     }
 

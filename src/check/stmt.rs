@@ -121,6 +121,9 @@ impl Checker<'_> {
 
     /// An expression as a statement: it must do something.
     fn expr_stmt(&mut self, e: &ast::Expr) -> Option<StmtKind> {
+        if super::aggregate::is_done_to_query(e) {
+            return self.each_of_query(e);
+        }
         let does_something = matches!(
             e.kind,
             ast::ExprKind::Call(..)
@@ -277,10 +280,11 @@ impl Checker<'_> {
         sequence: &ast::Expr,
         span: Span,
     ) -> Option<(Slot, Sequence)> {
-        let (ty, sequence) = (
-            self.resolve_value_type(&var.ty),
-            self.for_sequence(sequence),
-        );
+        let is_typed = !var.ty.path.is_empty();
+        let ty = is_typed.then(|| self.resolve_value_type(&var.ty));
+        let sequence = self.for_sequence(sequence);
+        let inferred = || sequence.as_ref().map(|(_, element)| element.clone());
+        let ty = ty.unwrap_or_else(inferred);
         let slot = self.declare_local(&var.name, ty.clone(), var.is_final, None);
         let (ty, (sequence, element)) = (ty?, sequence?);
         if element == ty {

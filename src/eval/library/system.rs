@@ -3,6 +3,7 @@
 use super::{Arguments, Context};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
+use crate::library::ClassId;
 
 pub(super) fn nothing(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     Ok(Value::Null)
@@ -44,9 +45,28 @@ pub(super) fn reset(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
 }
 
 pub(super) fn set_derivation_mode(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    cx.machine.derivation_mode = args.int(0);
-    Ok(Value::Null)
+    let mode = args.int(0);
+    let missing = match mode {
+        _ if mode & INTERPRETIVE != 0 => "INTERPRETIVE_FLAG",
+        _ if mode & KINDS == PARALLEL_NON_DETERMINISTIC => "PARALLEL_NON_DETERMINISTIC_MODE",
+        _ => {
+            cx.machine.derivation_mode = mode;
+            return Ok(Value::Null);
+        }
+    };
+    let message = format!(
+        "{missing} is not supported; there are PARALLEL_MODE, SEQUENTIAL_MODE and SEQUENTIAL_NON_DETERMINISTIC_MODE, \
+         each with or without EXCLUDE_DELETED_FLAG"
+    );
+    Err(cx.exception(ClassId::IllegalArgumentException, message))
 }
+
+/// Bits of the derivation mode that say which matches are applied.
+const KINDS: i32 = 3;
+/// One of them.
+const PARALLEL_NON_DETERMINISTIC: i32 = 1;
+/// Bit of the derivation mode for interpretive rules.
+const INTERPRETIVE: i32 = 4;
 
 pub(super) fn derivation_mode(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     Ok(Value::Int(cx.machine.derivation_mode))
