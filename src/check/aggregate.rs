@@ -6,9 +6,7 @@
 
 use super::Checker;
 use super::context::Collector;
-use super::model::{
-    Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Stmt, StmtKind, Type,
-};
+use super::model::{Aggregate, Expr, ExprKind, Place, Selection, Sequence, Slot, Type};
 use super::names::Target;
 use super::types::{is_numeric, promote};
 use crate::diag::{Diagnostic, Span};
@@ -287,28 +285,6 @@ impl Checker<'_> {
         Some(self.collect(sequence, Type::Node(ty), span))
     }
 
-    /// `(* X *)[v] += 1;`, `(* X *).f();`: the statement is run for each match.
-    pub(super) fn each_of_query(&mut self, e: &ast::Expr) -> Option<StmtKind> {
-        self.cx.open();
-        let outer = std::mem::replace(&mut self.cx.collector, Collector::Open);
-        let value = self.expr(e);
-        let found = std::mem::replace(&mut self.cx.collector, outer);
-        self.cx.close();
-        let Collector::Found(sequence, slot) = found else {
-            return None;
-        };
-        let body = Stmt {
-            kind: StmtKind::Expr(value?),
-            span: e.span,
-        };
-        Some(StmtKind::ForEach {
-            label: None,
-            slot: Some(slot),
-            sequence,
-            body: Box::new(body),
-        })
-    }
-
     /// `from:to`
     pub(super) fn range(&mut self, from: &ast::Expr, to: &ast::Expr, span: Span) -> Option<Expr> {
         if !self.may_collect("a range", span) {
@@ -354,21 +330,22 @@ impl Checker<'_> {
     }
 }
 
-/// Whether an expression assigns to what a query finds, or calls a method of it.
-pub(super) fn is_done_to_query(e: &ast::Expr) -> bool {
-    use ast::ExprKind as K;
-    let mut at = match &e.kind {
-        K::Assign(_, target, _) | K::Deferred(_, target, _) | K::IncDec { target, .. } => target,
-        K::Call(callee, _) => callee,
-        K::With(..) => e,
-        _ => return false,
-    };
-    loop {
-        at = match &at.kind {
-            K::Query(_) => return true,
-            K::Member(object, _) | K::Index(object, _) | K::With(object, _) => object,
-            K::Call(callee, _) => callee,
-            _ => return false,
-        };
+/// Whether a statement may be done for each of several values. `x = (* Leaf *).area;` would keep the last one only: that is
+/// taken for a slip.
+pub(super) fn repeats(e: &ast::Expr) -> bool {
+    match &e.kind {
+        ast::ExprKind::Assign(None, target, _) => begins_with_query(target),
+        _ => true,
+    }
+}
+
+/// Whether an expression is an attribute or a member of what a query finds.
+fn begins_with_query(e: &ast::Expr) -> bool {
+    match &e.kind {
+        ast::ExprKind::Query(_) => true,
+        ast::ExprKind::Member(object, _) | ast::ExprKind::Index(object, _) => {
+            begins_with_query(object)
+        }
+        _ => false,
     }
 }

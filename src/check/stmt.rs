@@ -121,9 +121,6 @@ impl Checker<'_> {
 
     /// An expression as a statement: it must do something.
     fn expr_stmt(&mut self, e: &ast::Expr) -> Option<StmtKind> {
-        if super::aggregate::is_done_to_query(e) {
-            return self.each_of_query(e);
-        }
         let does_something = matches!(
             e.kind,
             ast::ExprKind::Call(..)
@@ -136,7 +133,7 @@ impl Checker<'_> {
                 | ast::ExprKind::Broken
         );
         // A query or a range in it makes it a loop: `(* Leaf *).grow();` is done for every leaf.
-        let wanted = if repeats(e) {
+        let wanted = if super::aggregate::repeats(e) {
             Collector::Open
         } else {
             Collector::Closed
@@ -488,25 +485,5 @@ impl Checker<'_> {
             catches: handlers,
             finally,
         }
-    }
-}
-
-/// Whether a statement may be done for each of several values. `x = (* Leaf *).area;` would keep the last one only: that is
-/// taken for a slip.
-fn repeats(e: &ast::Expr) -> bool {
-    match &e.kind {
-        ast::ExprKind::Assign(None, target, _) => begins_with_query(target),
-        _ => true,
-    }
-}
-
-/// Whether an expression is an attribute or a member of what a query finds.
-fn begins_with_query(e: &ast::Expr) -> bool {
-    match &e.kind {
-        ast::ExprKind::Query(_) => true,
-        ast::ExprKind::Member(object, _) | ast::ExprKind::Index(object, _) => {
-            begins_with_query(object)
-        }
-        _ => false,
     }
 }
