@@ -26,7 +26,7 @@ struct Case {
     replaced: &'static [&'static str],
 }
 
-const CASES: [Case; 6] = [
+const CASES: [Case; 7] = [
     Case {
         name: "Koch curve, context-free",
         source: "module K;
@@ -73,6 +73,14 @@ const CASES: [Case; 6] = [
                 [RU(normal(30, 5)) RH(90) A(x * 0.8)] [RU(-30) RH(random(80, 100)) A(x * 0.8)]; ]",
         steps: 19,
         replaced: &["A"],
+    },
+    Case {
+        name: "tree that keeps its apices, no template",
+        source: "module A(float x);
+            protected void init() [ Axiom ==> A(1); ]
+            public void run() [ a:A(x) ==> F(x) RH(137.5) [RU(-40) A(x * 0.7)] RU(10) a { a[x] *= 0.9; }; ]",
+        steps: 18,
+        replaced: &[],
     },
 ];
 
@@ -195,7 +203,7 @@ fn grow(case: &Case) {
     let bytes = status("VmHWM").map_or(f64::NAN, |bytes| bytes / total as f64);
     let threads = std::env::var("RAYON_NUM_THREADS").unwrap_or_default();
     println!(
-        "{:34} {threads} thread(s) {:6.1} M new modules/s ({new} in {:.0} ms), {:.1} M per second of processor time, \
+        "{:39} {threads} thread(s) {:6.1} M new modules/s ({new} in {:.0} ms), {:.1} M per second of processor time, \
          {bytes:.0} bytes/module of {total}",
         case.name,
         new as f64 / best / 1e6,
