@@ -77,10 +77,15 @@ pub(super) fn extend<T: Send>(
     length: usize,
     item: impl Fn(usize, usize) -> T + Sync,
 ) {
-    if length == 1 {
+    if n * length < MIN_SHARE {
+        items.reserve(n * length);
+        for group in 0..n {
+            items.extend((0..length).map(|at| item(group, at)));
+        }
+    } else if length == 1 {
         let all = (0..n).into_par_iter().with_min_len(MIN_SHARE);
         items.par_extend(all.map(|i| item(i, 0)));
-    } else if length > 1 {
+    } else {
         // A division of numbers below 2^32 as a multiplication by the rounded-up inverse; exact, see Lemire, Kaser and
         // Kurz, Faster remainder by direct computation, 2019.
         let inverse = u64::MAX / length as u64 + 1;
@@ -93,7 +98,7 @@ pub(super) fn extend<T: Send>(
 }
 
 /// Items that one thread writes at least; fewer are not worth the handing over.
-const MIN_SHARE: usize = 1 << 13;
+pub(super) const MIN_SHARE: usize = 1 << 13;
 
 /// Objects that words refer to by number; 0 is null and never stored.
 #[derive(Clone, Debug, Default)]
@@ -158,10 +163,12 @@ mod tests {
     fn groups_are_numbered_exactly() {
         for length in [1, 2, 3, 7, 10, 4097] {
             let mut items = vec![(9, 9)];
-            let n = (1 << 17) / length + 3;
-            extend(&mut items, n, length, |group, at| (group, at));
-            let wanted = (0..n).flat_map(|group| (0..length).map(move |at| (group, at)));
-            assert!(items[1..].iter().copied().eq(wanted));
+            for n in [0, 5, (1 << 17) / length + 3] {
+                items.truncate(1);
+                extend(&mut items, n, length, |group, at| (group, at));
+                let wanted = (0..n).flat_map(|group| (0..length).map(move |at| (group, at)));
+                assert!(items[1..].iter().copied().eq(wanted));
+            }
         }
     }
 

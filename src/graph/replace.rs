@@ -1,6 +1,7 @@
 //! Putting copies of templates in the place of nodes, for all matches of a step at once.
 
-use super::arena::{NIL, extend};
+use super::arena::{MIN_SHARE, NIL, extend};
+use super::extents::Extents;
 use super::links::{Link, Links};
 use super::store::{CONSUMED, Graph, GraphError, Header, INSERTED, MOST_NODES, MOST_WORDS};
 use super::template::{Batch, Template};
@@ -128,11 +129,16 @@ impl<O: Payload> Graph<O> {
         for copying in &copyings {
             self.copy(copying, &places);
         }
-        for copying in copyings.iter().rev() {
-            self.enter_extents(copying, &places);
+        let n_new: usize = batches.iter().map(Batch::n_nodes).sum();
+        let (nodes, links, extents) = (&mut self.nodes, &mut self.links, &mut self.extents);
+        let mut link = || embed(nodes, links, &copyings, &places);
+        let mut enter = || enter_extents(extents, &copyings, &places);
+        if n_new < MIN_SHARE {
+            link();
+            enter();
+        } else {
+            rayon::join(link, enter);
         }
-        let n_new = batches.iter().map(Batch::n_nodes).sum();
-        self.embed(&copyings, &places);
         self.free_nodes = places.free;
         let n_left = self.free_nodes.len().saturating_sub(n_new);
         self.free_nodes.truncate(n_left);
@@ -230,64 +236,6 @@ impl<O: Payload> Graph<O> {
         }
     }
 
-    fn enter_extents(&mut self, copying: &Copying<'_>, places: &Places) {
-        let (n_parts, n_matches) = (copying.template().n_nodes(), copying.batch.matched.len());
-        for (ty, same) in &copying.template().by_type {
-            self.extents
-                .append(*ty, n_matches, same.len(), |before, rank| {
-                    let (number, rank) = (n_matches - 1 - before, same.len() - 1 - rank);
-                    places.of(copying.first + number * n_parts + same[rank] as usize)
-                });
-        }
-    }
-
-    /// Links the copies to what surrounds them, and to each other.
-    fn embed(&mut self, copyings: &[Copying<'_>], places: &Places) {
-        let mut ends = vec![];
-        for copying in copyings {
-            let (n_parts, last) = (copying.template().n_nodes(), copying.template().last);
-            ends.extend((0..copying.batch.matched.len()).map(|number| {
-                let first = copying.first + number * n_parts;
-                (places.of(first), places.of(first + last as usize))
-            }));
-            self.links.n_edges += copying.batch.n_nodes() - copying.batch.matched.len();
-        }
-        let matched = || copyings.iter().flat_map(|copying| &copying.batch.matched);
-        for (node, &(_, last)) in matched().zip(&ends) {
-            let mut at = self.nodes[node.index()].first_out;
-            while at != NIL {
-                let Header {
-                    flags,
-                    link,
-                    extent_place,
-                    ..
-                } = self.nodes[at as usize];
-                let child = if flags & CONSUMED == 0 {
-                    at
-                } else {
-                    let child = ends[extent_place as usize].0;
-                    self.links.move_bits(&mut self.nodes, at, child);
-                    child
-                };
-                Links::prepend(&mut self.nodes, last, child);
-                at = link.next_out;
-            }
-        }
-        let matched = copyings
-            .iter()
-            .rev()
-            .flat_map(|copying| copying.batch.matched.iter().rev());
-        for (node, &(first, _)) in matched.zip(ends.iter().rev()) {
-            let at = node.index() as u32;
-            let parent = self.nodes[node.index()].link.from;
-            if self.nodes[parent as usize].flags & CONSUMED == 0 {
-                self.links.leave_out_list(&mut self.nodes, at);
-                self.links.move_bits(&mut self.nodes, at, first);
-                self.links.enter_out_list(&mut self.nodes, parent, first);
-            }
-        }
-    }
-
     /// Frees a node whose edges and place in the extent are others' already.
     fn bury(&mut self, index: usize) {
         self.release_fields(index);
@@ -322,5 +270,65 @@ impl<O: Payload> Graph<O> {
             self.words.set(words + i, word);
         }
         Ok(node)
+    }
+}
+
+/// Adds the copies to the extents, those of the last batch first.
+fn enter_extents(extents: &mut Extents, copyings: &[Copying<'_>], places: &Places) {
+    for copying in copyings.iter().rev() {
+        let (n_parts, n_matches) = (copying.template().n_nodes(), copying.batch.matched.len());
+        for (ty, same) in &copying.template().by_type {
+            extents.append(*ty, n_matches, same.len(), |before, rank| {
+                let (number, rank) = (n_matches - 1 - before, same.len() - 1 - rank);
+                places.of(copying.first + number * n_parts + same[rank] as usize)
+            });
+        }
+    }
+}
+
+/// Links the copies to what surrounds them, and to each other.
+fn embed(nodes: &mut [Header], links: &mut Links, copyings: &[Copying<'_>], places: &Places) {
+    let mut ends = vec![];
+    for copying in copyings {
+        let (n_parts, last) = (copying.template().n_nodes(), copying.template().last);
+        ends.extend((0..copying.batch.matched.len()).map(|number| {
+            let first = copying.first + number * n_parts;
+            (places.of(first), places.of(first + last as usize))
+        }));
+        links.n_edges += copying.batch.n_nodes() - copying.batch.matched.len();
+    }
+    let matched = || copyings.iter().flat_map(|copying| &copying.batch.matched);
+    for (node, &(_, last)) in matched().zip(&ends) {
+        let mut at = nodes[node.index()].first_out;
+        while at != NIL {
+            let Header {
+                flags,
+                link,
+                extent_place,
+                ..
+            } = nodes[at as usize];
+            let child = if flags & CONSUMED == 0 {
+                at
+            } else {
+                let child = ends[extent_place as usize].0;
+                links.move_bits(nodes, at, child);
+                child
+            };
+            Links::prepend(nodes, last, child);
+            at = link.next_out;
+        }
+    }
+    let matched = copyings
+        .iter()
+        .rev()
+        .flat_map(|copying| copying.batch.matched.iter().rev());
+    for (node, &(first, _)) in matched.zip(ends.iter().rev()) {
+        let at = node.index() as u32;
+        let parent = nodes[node.index()].link.from;
+        if nodes[parent as usize].flags & CONSUMED == 0 {
+            links.leave_out_list(nodes, at);
+            links.move_bits(nodes, at, first);
+            links.enter_out_list(nodes, parent, first);
+        }
     }
 }
