@@ -1,6 +1,6 @@
 //! What a check learns of names and where they are declared, for editors.
 //!
-//! A [`Survey`] is made only on request ([`survey`](super::survey)); it also answers what could stand at a place: there the
+//! A [`Survey`] is made only on request ([`survey`](fn@super::survey)); it also answers what could stand at a place: there the
 //! editor puts the name [`MARKER`] into the text, which nothing is called, and the check notes what it knows when it
 //! meets it.
 
