@@ -122,7 +122,7 @@ const EXTRAS: &[&str] = &[
     "?",
 ];
 
-/// SplitMix64: small, and the same everywhere.
+/// `SplitMix64`: small, and the same everywhere.
 struct Random(u64);
 
 impl Random {

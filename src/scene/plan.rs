@@ -11,7 +11,8 @@ use super::validate::check_placement;
 use crate::geometry::Shape;
 use glam::DAffine3;
 
-/// Groups of at most this many primitives, and without instances of their own, dissolve wherever they are used.
+/// Groups of at most this many primitives, and without instances of their own, dissolve wherever they are used. Where groups
+/// are nested too deep otherwise, instances of their own count as one primitive each.
 const SMALL: usize = 16;
 /// How deep the groups that stay may be nested.
 pub(super) const MAX_DEPTH: usize = 16;
@@ -58,19 +59,40 @@ pub(super) fn plan(description: &SceneDescription) -> Result<Plan<'_>, SceneErro
         return Err(SceneError::NoRoot(root.0));
     }
     let order = children_first(&description.groups, root)?;
-    let dissolves = which_dissolve(&description.groups, root, &order);
-
-    let mut places = vec![usize::MAX; description.groups.len()];
-    let mut groups: Vec<PlannedGroup> = Vec::new();
-    for group in order.into_iter().filter(|group| !dissolves[*group]) {
-        let planned = gather(&description.groups, group, &dissolves, &places, &groups)?;
-        if planned.height > MAX_DEPTH {
-            return Err(SceneError::TooDeep { limit: MAX_DEPTH });
+    // Shallow nesting is worth memory only where there is no other way.
+    for dissolving in [Dissolving::Leaves, Dissolving::Small] {
+        let dissolves = which_dissolve(&description.groups, root, &order, dissolving);
+        let groups = gather_all(&description.groups, &order, &dissolves)?;
+        if groups.iter().all(|group| group.height <= MAX_DEPTH) {
+            return Ok(Plan { groups });
         }
-        places[group] = groups.len();
-        groups.push(planned);
     }
-    Ok(Plan { groups })
+    Err(SceneError::TooDeep { limit: MAX_DEPTH })
+}
+
+/// Which groups dissolve because they are small.
+#[derive(Clone, Copy, PartialEq)]
+enum Dissolving {
+    /// Those without instances of their own.
+    Leaves,
+    /// All.
+    Small,
+}
+
+/// The groups that do not dissolve, with what dissolves into them.
+fn gather_all<'a>(
+    groups: &'a [Group],
+    order: &[usize],
+    dissolves: &[bool],
+) -> Result<Vec<PlannedGroup<'a>>, SceneError> {
+    let mut places = vec![usize::MAX; groups.len()];
+    let mut planned: Vec<PlannedGroup> = Vec::new();
+    for &group in order.iter().filter(|group| !dissolves[**group]) {
+        let gathered = gather(groups, group, dissolves, &places, &planned)?;
+        places[group] = planned.len();
+        planned.push(gathered);
+    }
+    Ok(planned)
 }
 
 /// All groups that `root` reaches, each after those it refers to.
@@ -116,30 +138,44 @@ fn at(instance: &Instance, problem: Problem) -> SceneError {
 }
 
 /// For each group, whether it dissolves into those that refer to it.
-fn which_dissolve(groups: &[Group], root: GroupId, order: &[usize]) -> Vec<bool> {
+fn which_dissolve(
+    groups: &[Group],
+    root: GroupId,
+    order: &[usize],
+    dissolving: Dissolving,
+) -> Vec<bool> {
     let mut uses = vec![0_usize; groups.len()];
     for group in order {
         for instance in &groups[*group].instances {
             uses[instance.group.0 as usize] += 1;
         }
     }
-    // Primitives of a group with all that dissolved into it, or `None` if instances remain in it.
-    let mut sizes: Vec<Option<usize>> = vec![Some(0); groups.len()];
+    // Primitives of a group with all that dissolved into it, and the instances that remain in it.
+    let mut sizes = vec![(0_usize, 0_usize); groups.len()];
     let mut dissolves = vec![false; groups.len()];
     for &group in order {
-        let own = groups[group]
-            .shapes
-            .iter()
-            .map(|placed| primitive_count(&placed.shape))
-            .sum();
-        sizes[group] = groups[group]
+        let (mut own, mut remaining) = (0_usize, 0_usize);
+        for placed in &groups[group].shapes {
+            own = own.saturating_add(primitive_count(&placed.shape));
+        }
+        for child in groups[group]
             .instances
             .iter()
-            .try_fold(own, |sum: usize, instance| {
-                let child = instance.group.0 as usize;
-                dissolves[child].then_some(sum.saturating_add(sizes[child]?))
-            });
-        let is_small = sizes[group].is_some_and(|size| size <= SMALL);
+            .map(|instance| instance.group.0 as usize)
+        {
+            let (within, kept) = if dissolves[child] {
+                sizes[child]
+            } else {
+                (0, 1)
+            };
+            own = own.saturating_add(within);
+            remaining = remaining.saturating_add(kept);
+        }
+        sizes[group] = (own, remaining);
+        let is_small = match dissolving {
+            Dissolving::Leaves => remaining == 0 && own <= SMALL,
+            Dissolving::Small => own.saturating_add(remaining) <= SMALL,
+        };
         dissolves[group] = group != root.0 as usize && (uses[group] == 1 || is_small);
     }
     dissolves

@@ -155,6 +155,20 @@ fn doubling(levels: u32) -> Vec<Group> {
     groups
 }
 
+/// Each group holds the one before it seventeen times: too many for any to dissolve.
+fn widening(levels: u32) -> Vec<Group> {
+    let mut groups = doubling(0);
+    for level in 0..levels {
+        groups.push(Group {
+            shapes: vec![],
+            instances: (0..17)
+                .map(|k| instance(level, DAffine3::IDENTITY, k))
+                .collect(),
+        });
+    }
+    groups
+}
+
 #[test]
 fn deep_nesting_works_up_to_its_limit_and_is_refused_beyond() {
     let scene = Scene::build(describe(doubling(16))).unwrap();
@@ -167,7 +181,14 @@ fn deep_nesting_works_up_to_its_limit_and_is_refused_beyond() {
         let outermost = if y >= 32_768 { 17 } else { 1 };
         assert_eq!(point.instance_organ, Some(OrganId(outermost)));
     }
-    let deeper = Scene::build(describe(doubling(17))).map(|_| ());
+    // Where that alone would be too deep, small groups dissolve into one another.
+    let scene = Scene::build(describe(doubling(40))).unwrap();
+    assert_eq!(scene.stats().world_primitives, 20 << 40);
+    let ray = Ray::new(DVec3::new(7.0, (1_u64 << 39) as f64, 9.0), DVec3::NEG_Z);
+    let hit = scene.closest(&ray).unwrap();
+    assert!((hit.t - 8.6).abs() < 1e-9);
+    assert_eq!(scene.surface(&ray, &hit).instance_organ, Some(OrganId(41)));
+    let deeper = Scene::build(describe(widening(17))).map(|_| ());
     assert_eq!(deeper, Err(SceneError::TooDeep { limit: 16 }));
     // A chain of groups used once has no depth at all.
     let mut chain = vec![Group {
