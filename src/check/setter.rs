@@ -19,6 +19,8 @@ pub(super) enum Accessor {
     SetAll(&'static [&'static str]),
     /// `setColor(r, g, b)`: a new shader of that colour.
     SetColor,
+    /// `setColor(0xRRGGBB)`: likewise.
+    SetColorBits,
     /// `setAxis(v)`, `getAxis()` of a parallelogram: half its width as a vector.
     GetAxis,
 }
@@ -60,7 +62,13 @@ impl Checker<'_> {
             "setTransform" | "setTranslation" if has("transform.x") => {
                 found.push(Accessor::SetAll(TRANSLATION));
             }
-            "setColor" if has("shader") => found.push(Accessor::SetColor),
+            "setColor" if has("shader") => {
+                found.push(Accessor::SetColor);
+                // The colour of a shoot is a number of the EGA palette.
+                if self.visible_field(id, "color").is_none() {
+                    found.push(Accessor::SetColorBits);
+                }
+            }
             "getAxis" if has("width.full") => found.push(Accessor::GetAxis),
             "setOpen" if has("baseOpen") && has("topOpen") => {
                 found.push(Accessor::SetAll(&["baseOpen", "topOpen"]));
@@ -85,6 +93,7 @@ impl Checker<'_> {
                 .map(wanted)
                 .collect(),
             Accessor::SetColor => vec![Wanted::Value(Type::Float); 3],
+            Accessor::SetColorBits => vec![Wanted::Value(Type::Int)],
         };
         Overload {
             id: Callee::Accessor(accessor),
@@ -121,10 +130,14 @@ impl Checker<'_> {
                     .collect();
                 self.set_several(object, id, &fields, args, span)
             }
-            Accessor::SetColor => {
+            Accessor::SetColor | Accessor::SetColorBits => {
+                let constructor = match accessor {
+                    Accessor::SetColorBits => ConstructorId::ShaderBits,
+                    _ => ConstructorId::ShaderRgb,
+                };
                 let ty = Type::Class(ClassId::RGBAShader);
                 let shader = Expr {
-                    kind: ExprKind::NewObject(ConstructorId::ShaderRgb, args),
+                    kind: ExprKind::NewObject(constructor, args),
                     ty,
                     span,
                 };

@@ -139,6 +139,7 @@ impl Checker<'_> {
                 | Accessor::Set(_)
                 | Accessor::SetAll(_)
                 | Accessor::SetColor
+                | Accessor::SetColorBits
                 | Accessor::GetAxis,
             ) => {}
         }

@@ -17,6 +17,7 @@ signatures! {
     Graytone = "Graytone"."new"(Float) -> Void, Pure, "0..=1", "A gray.";
     Shader = "RGBAShader"."new"() -> Void, Pure, "", "Half gray, opaque.";
     ShaderRgb = "RGBAShader"."new"(Float, Float, Float) -> Void, Pure, "0..=1", "From red, green, blue; opaque.";
+    ShaderBits = "RGBAShader"."new"(Int) -> Void, Pure, "", "From the bits 0xRRGGBB; opaque.";
     ShaderRgba = "RGBAShader"."new"(Float, Float, Float, Float) -> Void, Pure, "0..=1", "From red, green, blue, alpha.";
     Phong = "Phong"."new"() -> Void, Pure, "", "Half gray, matt.";
     PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";

@@ -21,6 +21,7 @@ pub fn constructor(id: C) -> Maker {
         C::Graytone => shaders::make_graytone,
         C::Shader => shaders::make_gray,
         C::ShaderRgb => shaders::make_rgb,
+        C::ShaderBits => shaders::make_bits,
         C::ShaderRgba => shaders::make_rgba,
         C::Phong => shaders::make_phong,
         C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,

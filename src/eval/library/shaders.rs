@@ -29,6 +29,16 @@ pub(super) fn make_rgb(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> R
     ))
 }
 
+/// From 0xRRGGBB, as colours are numbered in Java.
+pub(super) fn make_bits(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let [_, red, green, blue] = args.int(0).to_be_bytes().map(|c| f32::from(c) / 255.0);
+    Ok(new_object(class, Data::Shader([red, green, blue, 1.0])))
+}
+
 pub(super) fn make_rgba(
     _: &mut Context<'_>,
     class: ClassId,
