@@ -3,8 +3,8 @@
 use super::signature::{self, builtin_named};
 use super::words::{AGGREGATES, ARROWS, EDGES, KEYWORDS, Word};
 use crate::library::{
-    ClassId, ConstantValue, ConstructorId, Effect as CallEffect, FunctionId, MethodId, Signature,
-    constants,
+    ClassId, ConstantValue, ConstructorId, Effect as CallEffect, FunctionId, LibraryConstant,
+    MethodId, Signature, constants,
 };
 use crate::turtle::effect::{Change, Effect, Primitive, Register, Scope};
 use crate::turtle::{BuiltinType, Registers, builtin_types};
@@ -269,6 +269,8 @@ fn functions(page: &mut String) {
         heading(page, title);
         calls(page, &own(effects));
     }
+    heading(page, "### Edges");
+    constants_of(page, "");
     let mut owners: Vec<&str> = all
         .iter()
         .map(|row| row.owner)
@@ -312,7 +314,10 @@ fn calls(page: &mut String, rows: &[&Signature]) {
 }
 
 fn constants_of(page: &mut String, owner: &str) {
-    let rows = constants().iter().filter(|c| c.owner == owner);
+    let is_color = |c: &LibraryConstant| matches!(c.value, ConstantValue::Shader(_));
+    let rows = constants()
+        .iter()
+        .filter(|c| c.owner == owner && !is_color(c));
     let rows: Vec<Vec<String>> = rows
         .map(|c| vec![code(&signature::constant(c)), plain(c.doc)])
         .collect();
