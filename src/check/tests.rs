@@ -80,7 +80,7 @@ fn models_that_are_meant_so_get_no_warning() {
             check_one(&name, &text);
         }
     }
-    for folder in ["examples", "tests/abop"] {
+    for folder in ["examples", "examples/course", "tests/abop"] {
         for entry in std::fs::read_dir(root.join(folder)).unwrap() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|e| e == "rgg") {

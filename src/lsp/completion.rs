@@ -169,7 +169,7 @@ impl List<'_> {
 
     fn symbol(&mut self, rank: Rank, symbol: &Symbol) {
         let kind = match symbol.kind {
-            SymbolKind::Module => Kind::CLASS,
+            SymbolKind::Module | SymbolKind::Class => Kind::CLASS,
             SymbolKind::Method if symbol.owner.is_some() => Kind::METHOD,
             SymbolKind::Method => Kind::FUNCTION,
             SymbolKind::Field => Kind::FIELD,

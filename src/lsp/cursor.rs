@@ -49,8 +49,8 @@ impl Cursor {
             let rest = &text[at..];
             let (len, is_closed) = if rest.starts_with("//") {
                 (rest.find('\n').unwrap_or(rest.len()), false)
-            } else if rest.starts_with("/*") {
-                let closed = rest[2..].find("*/").map(|len| (len + 4, true));
+            } else if let Some(inside) = rest.strip_prefix("/*") {
+                let closed = inside.find("*/").map(|len| (len + 4, true));
                 closed.unwrap_or((rest.len(), false))
             } else if rest.starts_with(['"', '\'']) {
                 quoted_len(rest)

@@ -122,7 +122,7 @@ fn qualified<'a>(analysis: &'a Analysis, owner: &str, name: &str) -> Option<Thin
 fn global<'a>(analysis: &'a Analysis, name: &str) -> Option<Thing<'a>> {
     let module = analysis
         .symbols()
-        .find(|s| s.kind == SymbolKind::Module && s.name == name);
+        .find(|s| matches!(s.kind, SymbolKind::Module | SymbolKind::Class) && s.name == name);
     let functions = || {
         let rows: Vec<&Signature> = FunctionId::ALL
             .iter()

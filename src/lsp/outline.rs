@@ -32,7 +32,7 @@ fn entry(file: &FileView, symbol: &Symbol) -> DocumentSymbol {
             .range(&file.text, span.start as usize..span.end as usize)
     };
     let kind = match symbol.kind {
-        SymbolKind::Module => lsp_types::SymbolKind::CLASS,
+        SymbolKind::Module | SymbolKind::Class => lsp_types::SymbolKind::CLASS,
         SymbolKind::Method if symbol.owner.is_some() => lsp_types::SymbolKind::METHOD,
         SymbolKind::Method => lsp_types::SymbolKind::FUNCTION,
         SymbolKind::Field => lsp_types::SymbolKind::FIELD,

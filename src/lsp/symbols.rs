@@ -11,6 +11,8 @@ use std::sync::Arc;
 pub enum SymbolKind {
     /// A module.
     Module,
+    /// A class or interface.
+    Class,
     /// A method.
     Method,
     /// A field or parameter of a module.
@@ -119,7 +121,22 @@ impl Gatherer<'_> {
                     owner,
                 );
             }
-            Item::Class(_) | Item::Initializer { .. } => {}
+            Item::Class(class) => self.class(class),
+            Item::Initializer { .. } => {}
+        }
+    }
+
+    fn class(&mut self, class: &ast::Class) {
+        let extends = class
+            .extends
+            .as_ref()
+            .map(|ty| format!(" extends {}", self.type_text(ty)));
+        let (word, name) = (&class.keyword.name, &class.name.name);
+        let signature = format!("{word} {name}{}", extends.unwrap_or_default());
+        self.add(SymbolKind::Class, &class.name, class.span, signature, None);
+        let owner: Arc<str> = name.as_str().into();
+        for item in &class.members {
+            self.item(item, Some(&owner));
         }
     }
 
@@ -319,6 +336,8 @@ int a; int b;
 // Nothing follows this.
 
 public void run(int... n) [ ]
+// A pair.
+class Pair extends Node { int a; }
 ";
         assert_eq!(
             shown(text),
@@ -331,6 +350,8 @@ public void run(int... n) [ ]
                 "Variable int a | ",
                 "Variable int b | ",
                 "Method void run(int... n) | ",
+                "Class class Pair extends Node | A pair.",
+                "Field int a | ",
             ]
         );
     }

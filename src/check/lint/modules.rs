@@ -13,7 +13,14 @@ pub(super) fn check(model: &Model, found: &mut Diagnostics) {
         return;
     }
     let uses = Uses::of(model);
-    for module in &model.modules {
+    // Classes are not followed here: their objects stand in no graph.
+    let node = model.types.find("Node");
+    let is_node = |ty: TypeId| node.is_some_and(|node| model.types.is_a(ty, node));
+    for module in model
+        .modules
+        .iter()
+        .filter(|module| is_node(module.type_id))
+    {
         let name = &model.types[module.type_id].name;
         let is_used = |ty: TypeId| {
             uses.made.contains(&ty) || uses.looked_for.contains_key(&ty) || uses.named.contains(&ty)

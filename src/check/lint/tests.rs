@@ -84,6 +84,7 @@ fn modules_that_are_never_used_or_never_made_are_told() {
         "abstract module A; module B extends A; void run() [\nA ==> F(1);\nB ==> F(2); ]",
         &["3:no-match", "4:dead-rule", "4:no-match"],
     );
+    check("class A { int n; } interface B { void f(); }", &[]);
     // Without `init` it may be a part of a model.
     assert!(warnings("module A; void run() [ A ==> F(1); ]").is_empty());
     // Of several files one may use what another declares.
