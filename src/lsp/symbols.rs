@@ -236,6 +236,15 @@ impl Gatherer<'_> {
     /// The remarks directly above a declaration; else the one behind it on its line.
     fn doc(&self, span: Span) -> String {
         let line = self.lines.line(span.start as usize);
+        // What stands above a line belongs to what the line begins with.
+        let start = self.lines.bytes(self.text, line).start;
+        let before = self
+            .text
+            .get(start..span.start as usize)
+            .unwrap_or_default();
+        if before.contains(['(', '{', ';', ',']) {
+            return self.remark_behind(span);
+        }
         let mut above = vec![];
         let mut at = line;
         while at > 0 && self.is_remark(at - 1, !above.is_empty()) {
@@ -343,7 +352,7 @@ class Pair extends Node { int a; }
             shown(text),
             [
                 "Module module Leaf(float size, super.length) extends Box(size, 1) | A leaf. / It falls.",
-                "Field float size | A leaf. / It falls.",
+                "Field float size | ",
                 "Field int age = 0 | in days",
                 "Method void Leaf.older(int days) | Ages / it.",
                 "Variable const float K = 0.5 | extinction",
