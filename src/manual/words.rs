@@ -246,12 +246,22 @@ pub const EDGES: &[Word] = &[
     word(
         "---",
         "A --- B",
-        "An edge of any kind, either way; also `--`, `-+-`, `-/-`.",
+        "A successor edge, either way; `--` one of any kind, `-+-` a branch, `-/-` a refinement.",
     ),
     word(
         "(-->)*",
         "A (-->)* B",
         "Any number of edges, none included; `+` at least one, `?` at most one, `{n}`, `{n,m}`.",
+    ),
+    word(
+        "((>)* +>)+",
+        "A ((>)* +>)+ B",
+        "A way of several edges, repeated; types of nodes may stand between them.",
+    ),
+    word(
+        "(:",
+        "A (: > B)",
+        "Only the first match of this part; `(& … )` looks for it last, `(? … )` allows that it is missing.",
     ),
     word(
         "ancestor",
