@@ -299,3 +299,71 @@ fn statements_are_done_for_each_value() {
         );
     }
 }
+
+/// Collections and texts; what JDK 17 prints for the same statements.
+const STATEMENTS: &[(&str, &str)] = &[
+    (
+        "HashMap m = new HashMap(); String[] k = {\"zeta\", \"alpha\", \"beta\", \"x\", \"leaf\"}; for (int i = 0; i < 5; i++) m.put(k[i], i); println(m);",
+        "{zeta=0, alpha=1, x=3, leaf=4, beta=2}",
+    ),
+    (
+        "HashSet s = new HashSet(); for (int i = 40; i > 0; i -= 3) s.add(i); println(s + \" \" + s.size() + s.contains(7));",
+        "[1, 34, 4, 37, 7, 40, 10, 13, 16, 19, 22, 25, 28, 31] 14true",
+    ),
+    (
+        "LinkedHashMap m = new LinkedHashMap(); m.put(\"b\", 1); m.put(\"a\", 2); println(m + \" \" + m.keySet());",
+        "{b=1, a=2} [b, a]",
+    ),
+    (
+        "Stack s = new Stack(); s.push(1); s.push(2); println(s.pop() + \" \" + s.peek() + \" \" + s.empty());",
+        "2 1 false",
+    ),
+    (
+        "LinkedList l = new LinkedList(); l.addFirst(1); l.addLast(2); l.add(0); println(l.removeFirst() + \" \" + l.getLast() + l);",
+        "1 0[2, 0]",
+    ),
+    (
+        "Iterator i = Arrays.asList(new String[] {\"c\", \"a\"}).iterator(); while (i.hasNext()) print(i.next() + \";\"); println();",
+        "c;a;",
+    ),
+    (
+        "StringTokenizer t = new StringTokenizer(\"a,b;;c\", \",;\"); println(t.countTokens() + t.nextToken() + t.nextToken() + t.hasMoreTokens());",
+        "3abtrue",
+    ),
+    (
+        "double[] a = {3, 1.5, 2}; Arrays.sort(a); println(Arrays.toString(a)); Arrays.fill(a, 7.0); println(a[2]);",
+        "[1.5, 2.0, 3.0]\n7.0",
+    ),
+    (
+        "ArrayList l = new ArrayList(Arrays.asList(new String[] {\"b\", \"c\", \"a\"})); Collections.sort(l); Collections.reverse(l); println(l + \" \" + Collections.min(l));",
+        "[c, b, a] a",
+    ),
+    (
+        "println(\"a1b1\".replaceAll(\"1\", \"-\") + \"a1b1\".replaceFirst(\"1\", \"\") + \"x  y\".replaceAll(\"\\\\s+\", \"_\") + \"a;b,c\".split(\"[,;]\").length);",
+        "a-b-ab1x_y3",
+    ),
+];
+
+#[test]
+fn collections_print_what_java_prints() {
+    for (body, expected) in STATEMENTS {
+        let found = printed(body).unwrap_or_else(|fault| panic!("{body}: {fault}"));
+        assert_eq!(found.trim_end(), *expected, "{body}");
+    }
+}
+
+#[test]
+fn tables_are_filled_and_read() {
+    let body = "DatasetRef d = new DatasetRef(\"t\"); d.(setColumnKey(0, \"time\"), setColumnKey(1, 7)); chart(d, XY_PLOT);
+        d.addRow().(set(0, 1), set(1, 2.5)); d.getRow(2).set(1, 4L); Dataset e = new DatasetRef(\"t\").resolve();
+        println(e.getRowCount() + \" \" + e.getColumnCount() + \" \" + e.getColumnKey(1) + \" \" + e.getCell(0, 1) + \" \" + e.getCell(2, 1) + e.getCell(1, 1));
+        d.clear(); println(e.getRowCount());";
+    assert_eq!(printed(body).unwrap(), "3 2 7 2.5 4null\n0\n");
+}
+
+#[test]
+fn a_run_without_files_refuses_them() {
+    let fault =
+        printed("try { new FileReader(\"x.txt\"); } catch (Exception e) { println(\"caught\"); }");
+    assert!(fault.unwrap_err().contains("this run has no files"));
+}

@@ -17,8 +17,8 @@ const TYPES: &[(&[&str], &str)] = &[
         "write a method and call it",
     ),
     (
-        &["Point3f", "Vector3f", "Tuple3f"],
-        "write `Point3d`, `Vector3d` or `Tuple3d`",
+        &["Point3f", "Vector3f", "Tuple3f", "Color3f", "Point4d"],
+        "write `Point3d`, `Vector3d` or `Tuple3d`; for a colour `RGBColor`",
     ),
     (
         &[
@@ -28,24 +28,34 @@ const TYPES: &[(&[&str], &str)] = &[
             "TMatrix4d",
             "AxisAngle4d",
             "Quat4d",
+            "Math2",
         ],
         "write `Translate`, `Rotate` and `Scale` nodes",
     ),
     (
-        &["Lognormal", "Normal", "Uniform"],
-        "write `lognormal(mean, sd)`, `normal(mean, sd)` or `random(a, b)`",
+        &["Lognormal", "Normal", "Uniform", "Exponential", "Weibull"],
+        "of `jsc.distributions` write `lognormal(mean, sd)`, `normal(mean, sd)` or `random(a, b)`",
     ),
     (
-        &["DatasetRef", "Dataset", "XY_PLOT"],
-        "print the numbers with `println` and plot them elsewhere",
+        &[
+            "FluxLightModelTag",
+            "MeasureMode",
+            "Measurement",
+            "ChannelSPD",
+            "IrregularSpectralCurve",
+            "ChromaticitySPD",
+        ],
+        "spectra are not computed: write `LightModel`, with red, green and blue as three bands",
     ),
     (
-        &["FluxLightModel", "FluxLightModelTag", "MeasureMode"],
-        "write `LightModel`",
-    ),
-    (
-        &["SensorNode", "SensorGrid", "AreaSensorNode"],
-        "measure with a `Parallelogram` and `getAbsorbedPower3d`",
+        &[
+            "SensorNodeGrid",
+            "SensorAreaGrid",
+            "SensorGrid",
+            "AreaSensorNode",
+            "ColorGradient",
+        ],
+        "place `SensorNode`s in a loop",
     ),
     (
         &[
@@ -53,10 +63,12 @@ const TYPES: &[(&[&str], &str)] = &[
             "NURBSCurve",
             "BSplineSurface",
             "BSplineCurve",
+            "BSplineOfVertices",
             "HeightField",
             "CSGNode",
+            "Supershape",
         ],
-        "use `Cylinder`, `Frustum`, `Sphere` and `Parallelogram`",
+        "curved surfaces are not supported: use `Cylinder`, `Frustum`, `Sphere` and `Parallelogram`",
     ),
     (
         &[
@@ -65,74 +77,126 @@ const TYPES: &[(&[&str], &str)] = &[
             "FloatList",
             "IntList",
             "VertexGrid",
-            "Supershape",
             "PointCloud",
         ],
         "use `Parallelogram` and the other primitives",
     ),
     (
         &[
-            "AlgorithmSwitchShader",
-            "SideSwitchShader",
-            "ShaderRef",
             "ImageMap",
             "Checker",
             "Laplace3D",
+            "Granite3D",
+            "SunSkyLight",
         ],
         "use `RGBAShader` or `Phong`",
     ),
     (
-        &[
-            "File",
-            "FileReader",
-            "FileWriter",
-            "BufferedReader",
-            "BufferedWriter",
-            "PrintWriter",
-            "StringTokenizer",
-        ],
-        "write the numbers into the model, as an array",
+        &["Thread", "Runnable", "Timer", "ExecutorService", "Callable"],
+        "models run in one thread: call the method directly",
     ),
     (
-        &["Thread", "Runnable", "Socket", "Class", "Method"],
-        "models run in one thread and cannot reach the machine",
+        &[
+            "Socket",
+            "ServerSocket",
+            "URL",
+            "HttpResponse",
+            "InetAddress",
+        ],
+        "models cannot use the network: read a file instead",
+    ),
+    (
+        &["Class", "Method", "Field", "Reflection"],
+        "reflection is not supported: name the class, method or field in the text",
+    ),
+    (
+        &["ObjectMapper", "JsonNode", "JSONObject", "JSONArray"],
+        "Jackson and JSON are not supported: write lines with `PrintWriter`",
+    ),
+    (
+        &[
+            "NormalDistribution",
+            "UnivariateFunction",
+            "BrentSolver",
+            "SplineInterpolator",
+            "RealMatrix",
+        ],
+        "commons-math is not supported: write the computation as a method",
+    ),
+    (
+        &["CommandLine", "Options", "DefaultParser"],
+        "commons-cli is not supported: change the parameters in the model",
+    ),
+    (
+        &["Test", "Assert", "TestCase"],
+        "JUnit is not supported: compare the numbers and print them",
+    ),
+    (
+        &[
+            "Workbench",
+            "JFrame",
+            "JPanel",
+            "Registry",
+            "Item",
+            "Transaction",
+            "Command",
+            "UI",
+        ],
+        "there is no workbench, registry or transaction here: leave it out",
+    ),
+    (
+        &[
+            "ODE",
+            "Integrator",
+            "AdaptiveStepsizeIntegrator",
+            "Rate",
+            "Monitor",
+        ],
+        "differential equations (`:'=`) are not supported: write one step of the integration yourself",
     ),
     (
         &["SRoot", "TypeRoot", "TypeAxiom"],
-        "multiscale models are not supported",
+        "models of several scales are not supported: write one module for each scale",
+    ),
+    (
+        &["TreeMap", "TreeSet", "PriorityQueue", "ArrayDeque"],
+        "use `ArrayList` or `HashMap`, and `Collections.sort`",
     ),
     (
         &[
-            "HashSet",
-            "TreeMap",
-            "TreeSet",
-            "Hashtable",
-            "LinkedHashMap",
-            "Iterator",
+            "InputStreamReader",
+            "FileInputStream",
+            "FileOutputStream",
+            "ObjectOutputStream",
+            "Files",
+            "Paths",
+            "Path",
         ],
-        "use `ArrayList` or `HashMap`",
+        "read with `BufferedReader` and `FileReader`, write with `PrintWriter` and `FileWriter`",
     ),
 ];
 
 /// Functions that are not supported, with what to do instead.
 const FUNCTIONS: &[(&[&str], &str)] = &[
+    (&["image", "reference"], "write `new RGBAShader(r, g, b)`"),
+    (&["makeRendering"], "render with `understory render`"),
+    (&["dataset", "data"], "write `new DatasetRef(\"name\")`"),
     (
-        &["shader", "image", "reference"],
-        "write `new RGBAShader(r, g, b)`",
-    ),
-    (
-        &["makeSnapshot", "makeRendering"],
-        "render with `understory render`",
-    ),
-    (
-        &["chart", "dataset", "data"],
-        "print the numbers with `println`",
-    ),
-    (
-        &["runLater", "run", "stop", "workbench", "graph", "view"],
+        &["run", "stop", "graph", "view", "closeWorkbench", "startup"],
         "there is no workbench here; call the method directly",
     ),
-    (&["import3d", "export3d"], "export with `understory export`"),
+    (
+        &["import3d", "import3D"],
+        "geometry of files cannot be imported",
+    ),
+    (
+        &["integrate", "solver", "setIntegrator"],
+        "differential equations are not supported: write one step of the integration yourself",
+    ),
+    (
+        &["povray", "renderPOV", "exportPOV"],
+        "POV-Ray is not called: render with `understory render`",
+    ),
     (
         &["transformation"],
         "use `location`, `direction` and `endlocation`",

@@ -3,6 +3,8 @@
 //! Commands and paths are written out here; every option of a model comes from its row of the table of options.
 
 use crate::options::{Command, OptionRow, Options, Origin, Section, TABLE};
+use crate::pipeline::failure::Failure;
+use crate::pipeline::project_files::Access;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{
     Arg, ArgAction, ArgMatches, Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum,
@@ -41,6 +43,22 @@ pub enum Action {
 pub struct ModelArg {
     /// The model: a `.rgg` file, or a folder of them
     pub model: PathBuf,
+    /// Where files are that the model names otherwise: `C:/Users/me=data` (repeatable)
+    #[arg(long, value_name = "FROM=TO")]
+    pub path_map: Vec<String>,
+    /// A folder that the model may use besides its own (repeatable)
+    #[arg(long, value_name = "DIR")]
+    pub allow_path: Vec<PathBuf>,
+    /// Write the tables that the model draws (`chart`) into this folder, as CSV and SVG
+    #[arg(long, value_name = "DIR")]
+    pub charts: Option<PathBuf>,
+}
+
+impl ModelArg {
+    /// What the model may use besides its own folder.
+    pub fn access(&self) -> Result<Access, Failure> {
+        Access::parse(&self.path_map, &self.allow_path, self.charts.as_deref())
+    }
 }
 
 /// What all commands that run a model take.

@@ -1,6 +1,6 @@
 //! The commands that run once.
 
-use super::args::{CheckArgs, DeriveArgs, FlyArgs, Print, RenderArgs};
+use super::args::{CheckArgs, DeriveArgs, FlyArgs, ModelArg, Print, RenderArgs};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
@@ -21,7 +21,7 @@ const DERIVE_KEYS: &[&str] = &["step", "modules", "total", "hash"];
 /// `check`: reads and checks, writes nothing.
 pub(super) fn check(shell: &Shell, args: &CheckArgs) -> Result<(), Failure> {
     let path = &args.model.model;
-    let mut studio = studio(shell, path);
+    let mut studio = studio(shell, &args.model)?;
     let opened = studio.read(&shell.flags)?;
     let options = opened.options.clone();
     let run = shell.on_threads(&options, || studio.check(opened))?;
@@ -46,7 +46,7 @@ pub(super) fn derive(shell: &Shell, args: &DeriveArgs) -> Result<(), Failure> {
     let json = json
         .map(|json| JsonTarget::new(&shell.world, json, DERIVE_KEYS))
         .transpose()?;
-    let mut studio = studio(shell, path);
+    let mut studio = studio(shell, &args.model)?;
     run(shell, &mut studio, |studio, run| {
         let growth = studio.grow(run, &shell.cancel)?;
         if let Some(what) = args.print {
@@ -93,7 +93,7 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     };
     let target = PictureTarget::new(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
-    let mut studio = studio(shell, path);
+    let mut studio = studio(shell, &args.model)?;
     run(shell, &mut studio, |studio, run| {
         check_wishes(&shell.world, run)?;
         let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
@@ -114,7 +114,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
     };
     check_folder(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
-    let mut studio = studio(shell, path);
+    let mut studio = studio(shell, &args.model)?;
     run(shell, &mut studio, |studio, run| {
         if !run.options.orbit.value {
             let message = "a flight needs a path: `--orbit` flies once round the model";
@@ -175,13 +175,11 @@ pub(super) fn check_wishes(world: &dyn World, run: &Run) -> Result<(), Failure> 
     viewpoint::check(&run.sources, &run.options)
 }
 
-fn studio<'s>(shell: &'s Shell, path: &Path) -> Studio<'s> {
-    Studio::new(
-        &shell.world,
-        shell.terminal.clone(),
-        path.to_owned(),
-        Keep::Last,
-    )
+fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure> {
+    let path = model.model.clone();
+    let mut studio = Studio::new(&shell.world, shell.terminal.clone(), path, Keep::Last);
+    studio.access = model.access()?;
+    Ok(studio)
 }
 
 fn finished(made: &Made) -> Result<(), Failure> {

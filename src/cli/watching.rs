@@ -34,7 +34,8 @@ pub(super) fn watch(
         let why = format!("no file events here ({error}); looking once a second instead");
         shell.terminal.note(&why);
     }
-    let studio = studio(shell, model);
+    let mut studio = studio(shell, model);
+    studio.access = args.model.access()?;
     let mut runner = PictureRunner {
         shell,
         model,

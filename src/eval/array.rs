@@ -90,6 +90,29 @@ impl Array {
         })
     }
 
+    /// Stores a boxed value, numbers converted to what the array holds; nothing if the index is out of bounds.
+    pub fn put(&self, index: usize, value: Value) {
+        let (int, double) = (
+            value.as_int().unwrap_or(0),
+            value.as_double().unwrap_or(0.0),
+        );
+        match &self.elements {
+            Elements::Boolean(e) => store(e, index, i8::from(value.as_boolean() == Some(true))),
+            Elements::Byte(e) => store(e, index, int as i8),
+            Elements::Short(e) => store(e, index, int as i16),
+            Elements::Char(e) => store(e, index, int as u16),
+            Elements::Int(e) => store(e, index, int),
+            Elements::Long(e) => store(e, index, value.as_long().unwrap_or(0)),
+            Elements::Float(e) => store(e, index, (double as f32).to_bits()),
+            Elements::Double(e) => store(e, index, double.to_bits()),
+            Elements::Reference(e) => {
+                if let Some(slot) = e.get(index) {
+                    *slot.lock().unwrap_or_else(PoisonError::into_inner) = value;
+                }
+            }
+        }
+    }
+
     /// Moves the references that it holds to `parts`.
     pub(super) fn take_parts(&mut self, parts: &mut Vec<Value>) {
         if let Elements::Reference(elements) = &mut self.elements {
@@ -152,6 +175,30 @@ impl Elements {
             Self::Long(_) | Self::Double(_) => 8,
             Self::Reference(_) => size_of::<Mutex<Value>>(),
         }
+    }
+}
+
+/// Cells of plain numbers.
+trait Cell<T> {
+    fn put(&self, value: T);
+}
+
+macro_rules! cells {
+    ($($cell:ty: $number:ty;)*) => {$(
+        impl Cell<$number> for $cell {
+            fn put(&self, value: $number) {
+                self.store(value, Ordering::Relaxed);
+            }
+        }
+    )*};
+}
+cells! {
+    AtomicI8: i8; AtomicI16: i16; AtomicI32: i32; AtomicI64: i64; AtomicU16: u16; AtomicU32: u32; AtomicU64: u64;
+}
+
+fn store<T, C: Cell<T>>(cells: &[C], index: usize, value: T) {
+    if let Some(cell) = cells.get(index) {
+        cell.put(value);
     }
 }
 

@@ -1,8 +1,11 @@
 //! The state of a running model: graph, stack, variables, generator, output, budgets.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::files::{ModelFiles, NoFiles};
 use super::memory::{Charge, Meter};
+use super::object::Object;
 use super::program::Program;
 use super::random::JavaRandom;
 use super::stack::{Kind, Local, Stack};
@@ -72,6 +75,14 @@ pub struct Machine {
     pub statics: Statics,
     /// Memory of texts, arrays and collections.
     pub meter: Arc<Meter>,
+    /// Tables of the model by name.
+    pub tables: BTreeMap<String, Arc<Object>>,
+    /// Tables that `chart` was called for, and how to draw them.
+    pub charts: Vec<(Arc<Object>, i32)>,
+    /// The files that the model may use.
+    pub files: Box<dyn ModelFiles>,
+    /// What the model has written, by place: the whole text, and its share of the memory budget.
+    pub written: BTreeMap<String, (String, Charge)>,
     /// Bits of `setDerivationMode`.
     pub derivation_mode: i32,
     /// Number of the step that runs, from 1; 0 is `init`.
@@ -139,6 +150,10 @@ impl Machine {
             stack: Stack::default(),
             statics: program.new_statics(),
             meter: Meter::new(setup.limits.memory),
+            tables: BTreeMap::new(),
+            charts: vec![],
+            files: Box::new(NoFiles),
+            written: BTreeMap::new(),
             derivation_mode: DEFAULT_MODE,
             step: 0,
             uses_templates: true,

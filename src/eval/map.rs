@@ -1,4 +1,6 @@
-//! `java.util.HashMap`, with its entries in order of insertion (Java promises no order; this one is the same on every run).
+//! `java.util.HashMap`, with its entries in Java's order: by the bucket that the hash code falls in, within a bucket by age.
+//!
+//! Java promises no order, but its order is the same on every run, and what models print depends on it.
 
 use std::collections::HashMap;
 
@@ -13,11 +15,28 @@ pub struct JavaMap {
     /// Key and value in order of insertion; `None` where one was removed.
     entries: Vec<Option<(Value, Value)>>,
     n_entries: usize,
+    /// Most keys there ever were at one time: Java's table grows with them and never shrinks.
+    n_most: usize,
+    /// Whether entries stay in order of insertion, as in a `LinkedHashMap`.
+    keeps_order: bool,
     /// What the entries take of the memory budget.
     pub charge: Charge,
 }
 
 impl JavaMap {
+    /// A map, in order of insertion or in Java's.
+    pub fn new(keeps_order: bool) -> Self {
+        Self {
+            keeps_order,
+            ..Self::default()
+        }
+    }
+
+    /// Whether entries stay in order of insertion.
+    pub fn keeps_order(&self) -> bool {
+        self.keeps_order
+    }
+
     /// Number of keys.
     pub fn len(&self) -> usize {
         self.n_entries
@@ -28,9 +47,26 @@ impl JavaMap {
         self.n_entries == 0
     }
 
-    /// Keys and values in order of insertion.
-    pub fn entries(&self) -> impl Iterator<Item = &(Value, Value)> {
-        self.entries.iter().flatten()
+    /// Keys and values in the order in which Java goes through them.
+    pub fn entries(&self) -> Vec<&(Value, Value)> {
+        let mut all: Vec<_> = self.entries.iter().flatten().collect();
+        if !self.keeps_order {
+            let mask = self.n_buckets() - 1;
+            all.sort_by_key(|(key, _)| {
+                let hash = key.hash_code() as u32;
+                (hash ^ (hash >> 16)) & mask
+            });
+        }
+        all
+    }
+
+    /// Length of Java's table: 16, doubled whenever it is more than three quarters full.
+    fn n_buckets(&self) -> u32 {
+        let mut n = 16_u32;
+        while self.n_most > n as usize / 4 * 3 && n < 1 << 30 {
+            n *= 2;
+        }
+        n
     }
 
     /// All keys and values.
@@ -60,6 +96,7 @@ impl JavaMap {
             .push(self.entries.len());
         self.entries.push(Some((key, value)));
         self.n_entries += 1;
+        self.n_most = self.n_most.max(self.n_entries);
         None
     }
 
@@ -112,8 +149,11 @@ mod tests {
                 Some(i * i)
             );
         }
-        let keys: Vec<_> = map.entries().filter_map(|(k, _)| k.as_int()).collect();
-        assert_eq!(keys, [95, 96, 97, 98, 99]);
+        let keys = |map: &JavaMap| -> Vec<i32> {
+            let entries = map.entries();
+            entries.iter().filter_map(|(k, _)| k.as_int()).collect()
+        };
+        assert_eq!(keys(&map), [95, 96, 97, 98, 99]);
         assert_eq!(
             map.get(&Value::Int(97)).and_then(Value::as_int),
             Some(97 * 97)

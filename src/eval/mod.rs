@@ -9,6 +9,7 @@ pub mod array;
 pub mod code;
 mod compile;
 pub mod decimal;
+pub mod files;
 pub mod library;
 pub mod machine;
 pub mod map;

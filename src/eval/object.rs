@@ -5,6 +5,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use super::decimal::{java_double_to_string, java_float_to_string};
+use super::library::data::Table;
+use super::library::files::{TextReader, TextWriter};
+use super::library::more::Tokens;
 use super::map::JavaMap;
 use super::memory::Charge;
 use super::random::JavaRandom;
@@ -48,6 +51,22 @@ pub enum Data {
     Throwable(Option<Arc<Text>>),
     /// An object of a class of the model.
     Instance(Box<Instance>),
+    /// A `HashSet`: the keys of a map.
+    Set(Box<JavaMap>),
+    /// Elements or words that come one after the other.
+    Tokens(Box<Tokens>),
+    /// A table.
+    Table(Box<Table>),
+    /// A row of a table.
+    Row(Arc<Object>, usize),
+    /// The colour of a light, which changes with it.
+    LightColor(Arc<Object>),
+    /// The path of a file.
+    File(String),
+    /// A text that is read.
+    Reader(Box<TextReader>),
+    /// A text that is written.
+    Writer(Box<TextWriter>),
 }
 
 /// An object of a class of the model.
@@ -195,6 +214,8 @@ impl Object {
             Data::List(list) => parts.append(&mut list.values),
             Data::Map(map) => parts.extend(std::mem::take(&mut **map).into_parts()),
             Data::Instance(instance) => parts.append(&mut instance.fields),
+            Data::Set(map) => parts.extend(std::mem::take(&mut **map).into_parts()),
+            Data::Table(table) => table.take_parts(parts),
             _ => {}
         }
     }
@@ -229,11 +250,16 @@ impl Object {
             Data::List(list) => push_all(out, ["[", "]"], &list.values, |out, v| {
                 v.append_nested(out, depth);
             }),
-            Data::Map(map) => push_all(out, ["{", "}"], map.entries(), |out, (key, value)| {
-                key.append_nested(out, depth);
-                out.push('=');
-                value.append_nested(out, depth);
-            }),
+            Data::Map(map) => push_all(
+                out,
+                ["{", "}"],
+                map.entries(),
+                |out, (key, value): &(Value, Value)| {
+                    key.append_nested(out, depth);
+                    out.push('=');
+                    value.append_nested(out, depth);
+                },
+            ),
             Data::Buffer(text, _) => out.push_str(&text),
             Data::Throwable(message) => {
                 out.push_str(&qualified(self.class));
@@ -249,6 +275,22 @@ impl Object {
                     out.push_str(message.as_str());
                 }
             }
+            Data::Set(set) => {
+                push_all(
+                    out,
+                    ["[", "]"],
+                    set.entries(),
+                    |out, (key, _): &(Value, Value)| {
+                        key.append_nested(out, depth);
+                    },
+                );
+            }
+            Data::Table(table) => out.push_str(&table.title),
+            Data::File(path) => out.push_str(&path),
+            Data::Tokens(_) | Data::Row(..) | Data::LightColor(_) => {
+                out.push_str(self.class.name());
+            }
+            Data::Reader(_) | Data::Writer(_) => out.push_str(self.class.name()),
             Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
                 out.push_str(self.class.name());
             }
@@ -282,10 +324,10 @@ fn push_all<T>(
 
 /// Java's full name of a class that can be thrown.
 pub fn qualified(class: ClassId) -> String {
-    let package = if class == ClassId::IOException {
-        "java.io"
-    } else {
-        "java.lang"
+    let package = match class {
+        ClassId::IOException | ClassId::FileNotFoundException => "java.io",
+        ClassId::NoSuchElementException => "java.util",
+        _ => "java.lang",
     };
     format!("{package}.{}", class.name())
 }

@@ -5,6 +5,9 @@ use std::sync::Arc;
 use super::deep::{SHALLOW, with_deep_stack};
 use crate::check::model::{MethodId, Model};
 use crate::diag::{Diagnostic, Span, nearest};
+use crate::eval::files::ModelFiles;
+use crate::eval::library::data::Table;
+use crate::eval::object::Data;
 use crate::eval::{Limits, Machine, Output, Program, Purity, Setup, StopSign, Trap, Value};
 use crate::graph::{Graph, NodeId, TypeId};
 use crate::rewrite::Instantiated;
@@ -73,6 +76,27 @@ impl Growth {
     /// Applies every rule match by match from here on, for tests: rules that are templates give the same result either way.
     pub fn avoid_templates(&mut self) {
         self.machine.uses_templates = false;
+    }
+
+    /// The files that the model may use from now on; none without this.
+    pub fn set_files(&mut self, files: Box<dyn ModelFiles>) {
+        self.machine.files = files;
+    }
+
+    /// What the model has written so far: places as its files name them, and whole texts.
+    pub fn written(&self) -> impl Iterator<Item = (&str, &str)> {
+        let written = self.machine.written.iter();
+        written.map(|(place, (text, _))| (place.as_str(), text.as_str()))
+    }
+
+    /// The tables that the model draws, and how (0 lines, 1 points, 2 bars).
+    pub fn charts(&self) -> Vec<(Table, i32)> {
+        let charts = self.machine.charts.iter();
+        let tables = charts.filter_map(|(object, kind)| match &*object.lock() {
+            Data::Table(table) => Some(((**table).clone(), *kind)),
+            _ => None,
+        });
+        tables.collect()
     }
 
     /// Starts the model: initializes its variables, runs `init` and applies what that has queued. A model without `init`

@@ -3,9 +3,11 @@
 
 use std::sync::LazyLock;
 
-use super::ValueType::{Boolean, Char, Class, Double, Float, Int, Long, String, Void};
+use super::ValueType::{Boolean, Char, Class, Double, Float, Int, Long, String, Text, Void};
 use super::signature::{Index, index, signatures};
-use super::{ClassId, Effect, Signature};
+use super::{ClassId, Effect, Signature, ValueType};
+
+const SHADER: ValueType = Class(ClassId::Shader);
 
 signatures! {
     /// A constructor of a library class: one per overload.
@@ -39,6 +41,33 @@ signatures! {
     ListCapacity = "List"."new"(Int) -> Void, Pure, "", "Empty, with room.";
     ListCopy = "List"."new"(Class(ClassId::Collection)) -> Void, Pure, "", "The same elements.";
     Map = "Map"."new"() -> Void, Pure, "", "Empty.";
+    Set = "HashSet"."new"() -> Void, Pure, "", "Empty.";
+    SetCopy = "HashSet"."new"(Class(ClassId::Collection)) -> Void, Pure, "", "The same elements.";
+    MapCapacity = "HashMap"."new"(Int) -> Void, Pure, "", "Empty, with room.";
+    MapEmpty = "HashMap"."new"() -> Void, Pure, "", "Empty.";
+    Tokens = "StringTokenizer"."new"(String) -> Void, Pure, "", "The words between white space.";
+    TokensBetween = "StringTokenizer"."new"(String, Text) -> Void, Pure, "", "The words between any of these characters.";
+    Dataset = "Dataset"."new"() -> Void, Writes, "", "The table without a name.";
+    DatasetNamed = "Dataset"."new"(String) -> Void, Writes, "", "The table of this name; empty if it is new.";
+    File = "File"."new"(String) -> Void, Pure, "", "From a path.";
+    FileIn = "File"."new"(String, String) -> Void, Pure, "", "From a folder and a name.";
+    ReaderPath = "Reader"."new"(String) -> Void, Writes, "", "Opens a file to read.";
+    ReaderFile = "Reader"."new"(Class(ClassId::File)) -> Void, Writes, "", "Opens a file to read.";
+    ReaderOf = "BufferedReader"."new"(Class(ClassId::Reader)) -> Void, Pure, "", "Reads from another reader.";
+    ScannerPath = "Scanner"."new"(Class(ClassId::File)) -> Void, Writes, "", "Opens a file to read.";
+    ScannerOf = "Scanner"."new"(Class(ClassId::Reader)) -> Void, Pure, "", "Reads from a reader.";
+    WriterPath = "Writer"."new"(String) -> Void, Writes, "", "Begins a file.";
+    WriterFile = "Writer"."new"(Class(ClassId::File)) -> Void, Writes, "", "Begins a file.";
+    WriterAppend = "Writer"."new"(String, Boolean) -> Void, Writes, "", "Begins a file, or goes on behind what is there.";
+    WriterFileAppend = "Writer"."new"(Class(ClassId::File), Boolean) -> Void, Writes, "", "Begins a file, or goes on behind what is there.";
+    WriterOf = "Writer"."new"(Class(ClassId::Writer)) -> Void, Pure, "", "Writes to another writer.";
+    WriterOfFlushed = "Writer"."new"(Class(ClassId::Writer), Boolean) -> Void, Pure, "", "Writes to another writer.";
+    SwitchShader2 = "AlgorithmSwitchShader"."new"(SHADER, SHADER) -> Void, Pure, "", "For pictures and for light models.";
+    SwitchShader3 = "AlgorithmSwitchShader"."new"(SHADER, SHADER, SHADER) -> Void, Pure, "", "For the window, for pictures and for light models.";
+    SideShader = "SideSwitchShader"."new"(SHADER, SHADER) -> Void, Pure, "", "For the front and the back.";
+    RgbColorZero = "RGBColor"."new"() -> Void, Pure, "", "Black.";
+    ShaderOfColor = "RGBAShader"."new"(Class(ClassId::RGBColor)) -> Void, Pure, "", "Of one colour, opaque.";
+    LightModelLeast = "LightModel"."new"(Int, Int, Double) -> Void, Pure, "", "From numbers of rays and of reflections, and the power below which rays end.";
     Buffer = "StringBuffer"."new"() -> Void, Pure, "", "Empty.";
     BufferText = "StringBuffer"."new"(String) -> Void, Pure, "", "With this text.";
     Builder = "StringBuilder"."new"() -> Void, Pure, "", "Empty.";
@@ -58,6 +87,11 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
         ClassId::List,
         ClassId::Collection,
         ClassId::Map,
+        ClassId::Set,
+        ClassId::Reader,
+        ClassId::Writer,
+        ClassId::ShaderRef,
+        ClassId::View3D,
         ClassId::Tuple3d,
         ClassId::Spectrum3d,
     ]
@@ -65,6 +99,7 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
     {
         return &[];
     }
+    // A `BufferedReader` and a `Scanner` can also be made from what a plain reader is made from.
     class
         .lineage()
         .map(|c| BY_NAME.get(c.name(), "new"))

@@ -47,6 +47,27 @@ signatures! {
     SqrFloat = ""."sqr"(Float) -> Float, Pure, "", "Square.";
     SqrDouble = ""."sqr"(Double) -> Double, Pure, "", "Square.";
 
+    Chart = ""."chart"(Class(ClassId::Dataset), Int) -> Void, Prints, "", "Draws a table: `XY_PLOT`, `SCATTER_PLOT`, `BAR_PLOT`.";
+    ChartNamed = ""."chart"(Class(ClassId::Dataset), Int, String) -> Void, Prints, "", "Draws a table.";
+    ShaderNamed = ""."shader"(String) -> Class(ClassId::ShaderRef), Pure, "", "A shader of a GroIMP project; gray here.";
+    Export3d = ""."export3DScene"(String, String) -> Void, Prints, "", "Nothing: export with `understory export`.";
+    Snapshot = ""."makeSnapshot"(String) -> Void, Prints, "", "Nothing: make pictures with `understory render`.";
+    RunLater = ""."runLater"(Object) -> Void, Prints, "", "Nothing: there is no window.";
+    Workbench = ""."workbench"() -> Object, Pure, "", "Null: there is no window.";
+    RepaintView = ""."repaintView3D"() -> Void, Prints, "", "Nothing: there is no window.";
+    DefaultView = "View3D"."getDefaultView"(Object) -> Class(ClassId::View3D), Pure, "", "A window that does nothing.";
+    Gc = "System"."gc"() -> Void, Pure, "", "Nothing.";
+    Exit = "System"."exit"(Int) -> Void, Writes, "", "Ends the run.";
+    ArraysToString = "Arrays"."toString"(Object) -> String, Pure, "", "The elements of an array as text.";
+    ArraysSort = "Arrays"."sort"(Object) -> Void, Writes, "", "Sorts an array.";
+    ArraysFill = "Arrays"."fill"(Object, Object) -> Void, Writes, "", "Sets all elements of an array.";
+    ArraysAsList = "Arrays"."asList"(Object) -> Class(ClassId::List), Pure, "", "The elements of an array as a list.";
+    CollectionsSort = "Collections"."sort"(Class(ClassId::List)) -> Void, Writes, "", "Sorts a list.";
+    CollectionsReverse = "Collections"."reverse"(Class(ClassId::List)) -> Void, Writes, "", "Turns a list round.";
+    CollectionsShuffle = "Collections"."shuffle"(Class(ClassId::List)) -> Void, Random, "", "Mixes a list.";
+    CollectionsMin = "Collections"."min"(Class(ClassId::Collection)) -> Object, Pure, "", "The least element.";
+    CollectionsMax = "Collections"."max"(Class(ClassId::Collection)) -> Object, Pure, "", "The greatest element.";
+
     AttributeRadius = "Attributes"."RADIUS"(Node) -> Float, Graph, "m", "Radius with which the node is drawn, from its own diameter or the turtle's.";
     AttributeDtgColor = "Attributes"."DTG_COLOR"(Node) -> Int, Graph, "", "EGA colour with which the node is drawn, its own or the turtle's.";
     AttributeShader = "Attributes"."SHADER"(Node) -> SHADER, Graph, "", "Shader with which the node is drawn, its own or the turtle's.";

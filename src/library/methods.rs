@@ -47,6 +47,11 @@ signatures! {
     StringConcat = "String"."concat"(String) -> String, Pure, "", "With a text appended.";
     StringToCharArray = "String"."toCharArray"() -> CharArray, Pure, "", "Its characters.";
 
+    StringReplaceAll = "String"."replaceAll"(Text, Text) -> String, Pure, "", "With every occurrence of a text replaced; of patterns only blanks are known.";
+    StringReplaceFirst = "String"."replaceFirst"(Text, Text) -> String, Pure, "", "With the first occurrence replaced.";
+    StringIndexOfCharFrom = "String"."indexOf"(Char, Int) -> Int, Pure, "", "First place of a character from an index on, -1 if none.";
+    StringLastIndexOfChar = "String"."lastIndexOf"(Char) -> Int, Pure, "", "Last place of a character, -1 if none.";
+
     TupleX = "Tuple3d"."x"() -> Double, Pure, "", "First coordinate.";
     TupleY = "Tuple3d"."y"() -> Double, Pure, "", "Second coordinate.";
     TupleZ = "Tuple3d"."z"() -> Double, Pure, "", "Third coordinate.";
@@ -146,6 +151,80 @@ signatures! {
     ListRemove = "List"."remove"(Object) -> Boolean, Writes, "", "Removes the first equal element.";
     ListIndexOf = "List"."indexOf"(Object) -> Int, Pure, "", "Index of the first equal element, -1 if none.";
     ListClear = "List"."clear"() -> Void, Writes, "", "Removes all.";
+    ListAddElement = "List"."addElement"(Object) -> Void, Writes, "", "Appends.";
+    ListElementAt = "List"."elementAt"(Int) -> Object, Pure, "", "Element at an index from 0.";
+    ListFirst = "List"."getFirst"() -> Object, Pure, "", "The first element.";
+    ListLast = "List"."getLast"() -> Object, Pure, "", "The last element.";
+    ListAddFirst = "List"."addFirst"(Object) -> Void, Writes, "", "Inserts in front.";
+    ListAddLast = "List"."addLast"(Object) -> Void, Writes, "", "Appends.";
+    ListRemoveFirst = "List"."removeFirst"() -> Object, Writes, "", "Removes and gives the first element.";
+    ListRemoveLast = "List"."removeLast"() -> Object, Writes, "", "Removes and gives the last element.";
+    StackPush = "Stack"."push"(Object) -> Object, Writes, "", "Appends.";
+    StackPop = "Stack"."pop"() -> Object, Writes, "", "Removes and gives the last element.";
+    StackPeek = "Stack"."peek"() -> Object, Pure, "", "The last element.";
+    StackEmpty = "Stack"."empty"() -> Boolean, Pure, "", "Whether there is none.";
+    CollectionIterator = "Collection"."iterator"() -> Class(ClassId::Iterator), Pure, "", "Goes through the elements.";
+    IteratorHasNext = "Iterator"."hasNext"() -> Boolean, Pure, "", "Whether there is a further one.";
+    IteratorNext = "Iterator"."next"() -> Object, Writes, "", "The next one.";
+    SetAdd = "Set"."add"(Object) -> Boolean, Writes, "", "Adds it if it is not there; whether it was not.";
+    SetRemove = "Set"."remove"(Object) -> Boolean, Writes, "", "Removes it; whether it was there.";
+    SetClear = "Set"."clear"() -> Void, Writes, "", "Removes all.";
+    TokensHasMore = "StringTokenizer"."hasMoreTokens"() -> Boolean, Pure, "", "Whether there is a further word.";
+    TokensNext = "StringTokenizer"."nextToken"() -> String, Writes, "", "The next word.";
+    TokensCount = "StringTokenizer"."countTokens"() -> Int, Pure, "", "Number of words left.";
+
+    DatasetResolve = "DatasetRef"."resolve"() -> Class(ClassId::Dataset), Pure, "", "The table itself.";
+    DatasetClear = "Dataset"."clear"() -> Void, Writes, "", "Removes all rows and names.";
+    DatasetSetTitle = "Dataset"."setTitle"(String) -> Void, Writes, "", "Name of the table.";
+    DatasetSetColumnKey = "Dataset"."setColumnKey"(Int, Object) -> Void, Writes, "", "Name of a column.";
+    DatasetColumnKey = "Dataset"."getColumnKey"(Int) -> Object, Pure, "", "Name of a column.";
+    DatasetSetRowKey = "Dataset"."setRowKey"(Int, Object) -> Void, Writes, "", "Name of a row.";
+    DatasetRowKey = "Dataset"."getRowKey"(Int) -> Object, Pure, "", "Name of a row.";
+    DatasetColumnCount = "Dataset"."getColumnCount"() -> Int, Pure, "", "Number of columns.";
+    DatasetRowCount = "Dataset"."getRowCount"() -> Int, Pure, "", "Number of rows.";
+    DatasetCell = "Dataset"."getCell"(Int, Int) -> Object, Pure, "", "Value in a row and a column.";
+    DatasetSetCell = "Dataset"."set"(Int, Int, Object) -> Void, Writes, "", "Sets the value in a row and a column.";
+    DatasetAddRow = "Dataset"."addRow"() -> Class(ClassId::DatasetRow), Writes, "", "A new row.";
+    DatasetGetRow = "Dataset"."getRow"(Int) -> Class(ClassId::DatasetRow), Writes, "", "The row of a number; made if it is not there.";
+    RowSet = "DatasetRow"."set"(Int, Object) -> Class(ClassId::DatasetRow), Writes, "", "Sets the value in a column.";
+    RowGet = "DatasetRow"."get"(Int) -> Object, Pure, "", "Value in a column.";
+    RowSetKey = "DatasetRow"."setKey"(Object) -> Void, Writes, "", "Name of the row.";
+    RowAppend = "DatasetRow"."<<"(Object) -> Class(ClassId::DatasetRow), Writes, "", "Appends a value.";
+
+    FileName = "File"."getName"() -> String, Pure, "", "The name without folders.";
+    FilePath = "File"."getPath"() -> String, Pure, "", "The path.";
+    FileAbsolutePath = "File"."getAbsolutePath"() -> String, Pure, "", "The path.";
+    FileExists = "File"."exists"() -> Boolean, Writes, "", "Whether it can be read.";
+    ReaderReadLine = "Reader"."readLine"() -> String, Writes, "", "The next line, null at the end.";
+    ReaderRead = "Reader"."read"() -> Int, Writes, "", "The next character, -1 at the end.";
+    ReaderClose = "Reader"."close"() -> Void, Writes, "", "Ends reading.";
+    ReaderReady = "Reader"."ready"() -> Boolean, Pure, "", "Whether there is more.";
+    ScannerHasNextLine = "Scanner"."hasNextLine"() -> Boolean, Pure, "", "Whether there is a further line.";
+    ScannerHasNext = "Scanner"."hasNext"() -> Boolean, Pure, "", "Whether there is a further word.";
+    ScannerNextLine = "Scanner"."nextLine"() -> String, Writes, "", "The next line.";
+    ScannerNext = "Scanner"."next"() -> String, Writes, "", "The next word.";
+    ScannerNextInt = "Scanner"."nextInt"() -> Int, Writes, "", "The next word as a number.";
+    ScannerNextDouble = "Scanner"."nextDouble"() -> Double, Writes, "", "The next word as a number.";
+    WriterPrint = "Writer"."print"(Text) -> Void, Writes, "", "Writes a value.";
+    WriterPrintln = "Writer"."println"() -> Void, Writes, "", "Ends the line.";
+    WriterPrintlnText = "Writer"."println"(Text) -> Void, Writes, "", "Writes a value and ends the line.";
+    WriterWrite = "Writer"."write"(String) -> Void, Writes, "", "Writes a text.";
+    WriterWriteChar = "Writer"."write"(Int) -> Void, Writes, "", "Writes a character by its number.";
+    WriterAppend = "Writer"."append"(Text) -> Class(ClassId::Writer), Writes, "", "Writes a value.";
+    WriterNewLine = "Writer"."newLine"() -> Void, Writes, "", "Ends the line.";
+    WriterFlush = "Writer"."flush"() -> Void, Writes, "", "What is written so far is sure to appear.";
+    WriterClose = "Writer"."close"() -> Void, Writes, "", "Ends writing.";
+    ViewRepaint = "View3D"."repaint"() -> Void, Prints, "", "Nothing: there is no window.";
+
+    ColorSet = "RGBColor"."set"(COLOR) -> Void, Writes, "", "Copies.";
+    ColorSetParts = "RGBColor"."set"(Float, Float, Float) -> Void, Writes, "0..=1", "Sets red, green and blue.";
+    LightGetColor = "Light"."getColor"() -> COLOR, Pure, "0..=1", "Colour of the light; setting it changes the light.";
+    LightSetVisualize = "Light"."setVisualize"(Boolean) -> Void, Writes, "", "Whether a window shows its rays; nothing here.";
+    LightSetRaylength = "Light"."setRaylength"(Float) -> Void, Writes, "", "Length of rays in a window; nothing here.";
+    LightModelComputeForced = "LightModel"."compute"(Boolean) -> Void, Writes, "", "Traces the light.";
+    LightModelSensed = "LightModel"."getSensedIrradiance"(Node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
+    LightModelSensed3d = "LightModel"."getSensedIrradiance3d"(Node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
+
     MapPut = "Map"."put"(Object, Object) -> Object, Writes, "", "Stores under a key, gives the old value.";
     MapGet = "Map"."get"(Object) -> Object, Pure, "", "Value of a key, null if none.";
     MapContainsKey = "Map"."containsKey"(Object) -> Boolean, Pure, "", "Whether the key has a value.";
@@ -153,8 +232,10 @@ signatures! {
     MapSize = "Map"."size"() -> Int, Pure, "", "Number of keys.";
     MapIsEmpty = "Map"."isEmpty"() -> Boolean, Pure, "", "Whether there is no key.";
     MapClear = "Map"."clear"() -> Void, Writes, "", "Removes all.";
-    MapKeySet = "Map"."keySet"() -> COLLECTION, Pure, "", "The keys, in order of insertion.";
-    MapValues = "Map"."values"() -> COLLECTION, Pure, "", "The values, in order of insertion of their keys.";
+    MapKeySet = "Map"."keySet"() -> COLLECTION, Pure, "", "The keys, in Java's order.";
+    MapValues = "Map"."values"() -> COLLECTION, Pure, "", "The values, in the order of their keys.";
+    MapContainsValue = "Map"."containsValue"(Object) -> Boolean, Pure, "", "Whether some key has an equal value.";
+    MapGetOrDefault = "Map"."getOrDefault"(Object, Object) -> Object, Pure, "", "Value of a key, or another one if it has none.";
 
     BufferAppend = "StringBuffer"."append"(Text) -> Class(ClassId::StringBuffer), Writes, "", "Appends the text of a value.";
     BufferLength = "StringBuffer"."length"() -> Int, Pure, "", "Number of UTF-16 units.";

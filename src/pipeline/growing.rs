@@ -10,6 +10,7 @@ use crate::check::SourceModel;
 use crate::check::model::Model;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::eval;
+use crate::eval::files::ModelFiles;
 use crate::growth::{Growth, GrowthOptions};
 use crate::integrator::CancelToken;
 use crate::interpret::{self, Organs, Summary};
@@ -122,6 +123,7 @@ fn hint_at_files(sources: &Sources, found: &mut Diagnostics) {
 /// What goes wrong in the model, or that it was stopped.
 pub fn grow(
     run: &Run,
+    files: Box<dyn ModelFiles>,
     memory: u64,
     audience: &Arc<dyn Audience>,
     cancel: &CancelToken,
@@ -149,6 +151,7 @@ pub fn grow(
     let token = cancel.clone();
     let stop = Box::new(move || token.is_cancelled());
     let mut growth = Growth::new(&run.model, options, output, stop).map_err(blame)?;
+    growth.set_files(files);
     growth.init().map_err(blame)?;
     let n_steps = steps(&run.options, &growth);
     for step in 0..n_steps {

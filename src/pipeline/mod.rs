@@ -6,12 +6,14 @@
 
 pub mod audience;
 pub mod budget;
+pub mod charts;
 pub mod content_hash;
 pub mod exposing;
 pub mod failure;
 pub mod growing;
 pub mod inputs;
 pub mod making;
+pub mod project_files;
 pub mod report;
 pub mod sources;
 pub mod store;

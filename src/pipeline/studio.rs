@@ -2,10 +2,12 @@
 
 use super::audience::Audience;
 use super::budget;
+use super::charts;
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::growing::{self, Drawn};
 use super::inputs::Inputs;
+use super::project_files::{self, Access, ProjectFiles};
 use super::report::{Phase, PhaseSeconds};
 use super::sources::Sources;
 use super::surroundings;
@@ -58,6 +60,8 @@ pub struct Studio<'w> {
     audience: Arc<dyn Audience>,
     path: PathBuf,
     keep: Keep,
+    /// What the model may use besides its own folder, and where its charts go.
+    pub access: Access,
     drawn: Option<(ContentHash, Drawn)>,
     scene: Option<(ContentHash, Arc<Scene>)>,
     /// Time spent since this was last reset.
@@ -121,6 +125,7 @@ impl<'w> Studio<'w> {
             audience,
             path,
             keep,
+            access: Access::default(),
             drawn: None,
             scene: None,
             seconds,
@@ -183,11 +188,34 @@ impl<'w> Studio<'w> {
         self.audience.begins("growing");
         let memory = budget::memory(self.world, &run.options);
         let audience = &self.audience;
+        let files = Box::new(ProjectFiles::new(self.world, &self.path, &self.access));
         let grown = self.seconds.time(self.world, Phase::Derive, || {
-            growing::grow(run, memory, audience, cancel)
+            growing::grow(run, files, memory, audience, cancel)
         });
         self.audience.ends();
-        grown
+        let grown = grown?;
+        self.write_outputs(&grown)?;
+        Ok(grown)
+    }
+
+    /// Writes what the model has written, and its charts where the user wants them.
+    fn write_outputs(&self, growth: &Growth) -> Result<(), Failure> {
+        let written = growth.written();
+        let written = written.map(|(place, text)| (place.to_owned(), text.to_owned()));
+        project_files::write_all(self.world, written)?;
+        let Some(folder) = &self.access.charts else {
+            return Ok(());
+        };
+        for (table, kind) in growth.charts() {
+            let path = folder.join(charts::file_name(&table.title));
+            let path = path.to_string_lossy();
+            let files = [
+                (format!("{path}.csv"), charts::csv(&table)),
+                (format!("{path}.svg"), charts::svg(&table, kind)),
+            ];
+            project_files::write_all(self.world, files)?;
+        }
+        Ok(())
     }
 
     /// Grows the model and builds its scene, as far as they are not there from the run before.

@@ -1,7 +1,9 @@
 //! All that a run needs of the machine: files, the clock, memory.
 
+use super::project_files::ReadFile;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// No model file is larger than this many bytes: 256 MiB.
@@ -36,6 +38,9 @@ pub trait World: Sync {
     /// # Errors
     /// If it cannot be read, or is absurdly large.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// Something that reads files as [`read`](Self::read) does and can be given away.
+    fn reader(&self) -> ReadFile;
 
     /// The first `n` bytes of a file, fewer if it is shorter.
     ///
@@ -130,6 +135,10 @@ impl World for Machine {
         Ok(content)
     }
 
+    fn reader(&self) -> ReadFile {
+        Arc::new(|path| Self::new().read(path))
+    }
+
     fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
         let mut content = Vec::new();
         std::fs::File::open(path)?
@@ -214,17 +223,18 @@ pub(crate) mod fake {
     //! A machine that exists only in memory.
 
     use super::{Entry, World};
+    use crate::pipeline::project_files::ReadFile;
     use std::collections::BTreeMap;
     use std::io;
     use std::path::{Path, PathBuf};
-    use std::sync::Mutex;
     use std::sync::atomic::{AtomicU64, Ordering};
+    use std::sync::{Arc, Mutex};
     use std::time::Duration;
 
     /// Files in memory, and a clock that goes on by 10 ms whenever somebody looks at it.
     #[derive(Default)]
     pub(crate) struct FakeWorld {
-        files: Mutex<BTreeMap<PathBuf, Vec<u8>>>,
+        files: Arc<Mutex<BTreeMap<PathBuf, Vec<u8>>>>,
         ticks: AtomicU64,
     }
 
@@ -260,6 +270,17 @@ pub(crate) mod fake {
                 .get(path)
                 .cloned()
                 .ok_or_else(|| io::ErrorKind::NotFound.into())
+        }
+
+        fn reader(&self) -> ReadFile {
+            let files = Arc::clone(&self.files);
+            Arc::new(move |path| {
+                let files = files.lock().unwrap();
+                files
+                    .get(path)
+                    .cloned()
+                    .ok_or_else(|| io::ErrorKind::NotFound.into())
+            })
         }
 
         fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {

@@ -726,7 +726,7 @@ const GROUPS: [BuiltinType; 4] = [
     ),
 ];
 
-const SOLIDS: [BuiltinType; 9] = [
+const SOLIDS: [BuiltinType; 11] = [
     ty(
         "Sphere",
         "ShadedNull",
@@ -862,6 +862,61 @@ const SOLIDS: [BuiltinType; 9] = [
         )],
         NO_ARGUMENTS,
         "A lamp at the turtle's place.",
+    ),
+    ty(
+        "SensorNode",
+        "ShadedNull",
+        Effect::Group,
+        &[
+            field(
+                "radius",
+                FieldType::Float,
+                0.1,
+                "m",
+                "Radius of the disc that senses.",
+            ),
+            field(
+                "twoSided",
+                FieldType::Boolean,
+                0.0,
+                "",
+                "Whether both sides sense.",
+            ),
+            field(
+                "exponent",
+                FieldType::Float,
+                1.0,
+                "",
+                "Exponent of the cosine by which it senses.",
+            ),
+        ],
+        &[&[], &["radius"]],
+        "A sensor of light at the turtle's place; not drawn.",
+    ),
+    ty(
+        "GridClonerNode",
+        "Null",
+        Effect::Group,
+        &[
+            field("xCount", FieldType::Int, 1.0, "", "Copies along local x."),
+            field("yCount", FieldType::Int, 1.0, "", "Copies along local y."),
+            field(
+                "xDistance",
+                FieldType::Float,
+                1.0,
+                "m",
+                "Distance of copies along local x.",
+            ),
+            field(
+                "yDistance",
+                FieldType::Float,
+                1.0,
+                "m",
+                "Distance of copies along local y.",
+            ),
+        ],
+        NO_ARGUMENTS,
+        "In GroIMP what follows is repeated in a grid; here it stands once.",
     ),
 ];
 

@@ -152,10 +152,15 @@ impl Scope<'_> {
             let Value::Object(list) = list.get(p, m)? else {
                 return Err(Trap::null("go through a list", span));
             };
+            let keys: Option<Vec<Value>> = match &*list.lock() {
+                Data::Set(map) => Some(map.entries().iter().map(|(key, _)| key.clone()).collect()),
+                _ => None,
+            };
             for i in 0.. {
-                let element = match &*list.lock() {
-                    Data::List(list) => list.values.get(i).cloned(),
-                    _ => None,
+                let element = match (&keys, &*list.lock()) {
+                    (Some(keys), _) => keys.get(i).cloned(),
+                    (None, Data::List(list)) => list.values.get(i).cloned(),
+                    (None, _) => None,
                 };
                 let Some(element) = element else { break };
                 if let Some(at) = at {

@@ -2,6 +2,7 @@
 
 use super::{Arguments, Context, new_object};
 use crate::eval::machine::out_of_bounds;
+use crate::eval::map::JavaMap;
 use crate::eval::object::{Data, List};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
@@ -29,14 +30,137 @@ pub(super) fn make_list_copy(
 }
 
 pub(super) fn make_map(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Map(Box::default())))
+    Ok(new_object(class, Data::Map(Box::new(map_of(class)))))
+}
+
+fn map_of(class: ClassId) -> JavaMap {
+    let keeps_order = matches!(class, ClassId::LinkedHashMap | ClassId::LinkedHashSet);
+    JavaMap::new(keeps_order)
+}
+
+/// `new HashSet()`
+pub(super) fn make_map_set(
+    _: &mut Context<'_>,
+    class: ClassId,
+    _: &[Value],
+) -> Result<Value, Trap> {
+    Ok(new_object(class, Data::Set(Box::new(map_of(class)))))
+}
+
+/// `new HashSet(collection)`
+pub(super) fn make_set_copy(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let mut map = map_of(class);
+    for value in elements(cx, args, 0)? {
+        map.insert(value, Value::Boolean(true));
+    }
+    pay_map(cx, &mut map)?;
+    Ok(new_object(class, Data::Set(Box::new(map))))
+}
+
+/// Takes a share of the memory budget when a map has outgrown the one it has.
+fn pay_map(cx: &Context<'_>, map: &mut JavaMap) -> Result<(), Trap> {
+    let needed = ENTRY_BYTES * map.len() as u64;
+    if needed > map.charge.bytes() {
+        map.charge = cx
+            .machine
+            .charge(2 * needed)
+            .map_err(|trap| trap.at(cx.span))?;
+    }
+    Ok(())
+}
+
+pub(super) fn set_add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| {
+        let is_new = map.get(args.at(1)).is_none();
+        if is_new {
+            map.insert(args.at(1).clone(), Value::Boolean(true));
+            pay_map(cx, map)?;
+        }
+        Ok(Value::Boolean(is_new))
+    })
+}
+
+pub(super) fn set_remove(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| {
+        Ok(Value::Boolean(map.remove(args.at(1)).is_some()))
+    })
+}
+
+pub(super) fn contains_value(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| {
+        let is_there = map
+            .entries()
+            .iter()
+            .any(|(_, value)| value.equals(args.at(1)));
+        Ok(Value::Boolean(is_there))
+    })
+}
+
+pub(super) fn get_or_default(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_map(cx, args, |map| {
+        Ok(map.get(args.at(1)).unwrap_or(args.at(2)).clone())
+    })
+}
+
+/// The element at an index counted from the end that is asked for; there must be one.
+fn end(cx: &Context<'_>, values: &[Value], is_last: bool) -> Result<usize, Trap> {
+    if values.is_empty() {
+        return Err(cx.exception(ClassId::NoSuchElementException, "the list is empty"));
+    }
+    Ok(if is_last { values.len() - 1 } else { 0 })
+}
+
+pub(super) fn first(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        Ok(list.values[end(cx, &list.values, false)?].clone())
+    })
+}
+
+pub(super) fn last(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        Ok(list.values[end(cx, &list.values, true)?].clone())
+    })
+}
+
+pub(super) fn remove_first(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let at = end(cx, &list.values, false)?;
+        Ok(list.values.remove(at))
+    })
+}
+
+pub(super) fn remove_last(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        let at = end(cx, &list.values, true)?;
+        Ok(list.values.remove(at))
+    })
+}
+
+pub(super) fn add_first(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        list.values.insert(0, args.at(1).clone());
+        pay(cx, list)?;
+        Ok(Value::Null)
+    })
+}
+
+pub(super) fn push(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    add(cx, args)?;
+    Ok(args.at(1).clone())
 }
 
 /// A copy of the elements of the collection at `index`.
-fn elements(cx: &Context<'_>, args: &[Value], index: usize) -> Result<Vec<Value>, Trap> {
+pub(super) fn elements(cx: &Context<'_>, args: &[Value], index: usize) -> Result<Vec<Value>, Trap> {
     Ok(match &*cx.object(args, index)?.lock() {
         Data::List(list) => list.values.clone(),
-        Data::Map(map) => map.entries().map(|(key, _)| key.clone()).collect(),
+        Data::Map(map) | Data::Set(map) => {
+            let entries = map.entries();
+            entries.into_iter().map(|(key, _)| key.clone()).collect()
+        }
         _ => vec![],
     })
 }
@@ -78,16 +202,24 @@ fn checked(cx: &Context<'_>, index: i32, n: usize) -> Result<usize, Trap> {
 }
 
 pub(super) fn size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let n = on_list(cx, args, |list| Ok(list.values.len()))?;
+    let n = match &*cx.object(args, 0)?.lock() {
+        Data::List(list) => list.values.len(),
+        Data::Set(map) => map.len(),
+        _ => 0,
+    };
     Ok(Value::Int(i32::try_from(n).unwrap_or(i32::MAX)))
 }
 
 pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_list(cx, args, |list| Ok(Value::Boolean(list.values.is_empty())))
+    let n = size(cx, args)?;
+    Ok(Value::Boolean(n.as_int() == Some(0)))
 }
 
 pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let wanted = args.at(1);
+    if let Data::Set(map) = &*cx.object(args, 0)?.lock() {
+        return Ok(Value::Boolean(map.get(wanted).is_some()));
+    }
     Ok(Value::Boolean(
         elements(cx, args, 0)?.iter().any(|v| v.equals(wanted)),
     ))
@@ -176,10 +308,10 @@ pub(super) fn clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
 fn on_map<T: Default>(
     cx: &Context<'_>,
     args: &[Value],
-    f: impl FnOnce(&mut crate::eval::map::JavaMap) -> Result<T, Trap>,
+    f: impl FnOnce(&mut JavaMap) -> Result<T, Trap>,
 ) -> Result<T, Trap> {
     match &mut *cx.object(args, 0)?.lock() {
-        Data::Map(map) => f(map),
+        Data::Map(map) | Data::Set(map) => f(map),
         _ => Ok(T::default()),
     }
 }
@@ -187,13 +319,7 @@ fn on_map<T: Default>(
 pub(super) fn put(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     on_map(cx, args, |map| {
         let old = map.insert(args.at(1).clone(), args.at(2).clone());
-        let needed = ENTRY_BYTES * map.len() as u64;
-        if needed > map.charge.bytes() {
-            map.charge = cx
-                .machine
-                .charge(2 * needed)
-                .map_err(|trap| trap.at(cx.span))?;
-        }
+        pay_map(cx, map)?;
         Ok(old.unwrap_or_default())
     })
 }
@@ -227,26 +353,37 @@ pub(super) fn map_is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
 }
 
 pub(super) fn map_clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let old = on_map(cx, args, |map| Ok(std::mem::take(map)))?;
+    let old = on_map(cx, args, |map| {
+        let empty = JavaMap::new(map.keeps_order());
+        Ok(std::mem::replace(map, empty))
+    })?;
     drop(old);
     Ok(Value::Null)
 }
 
 pub(super) fn key_set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let keys = on_map(cx, args, |map| {
-        Ok(map.entries().map(|(key, _)| key.clone()).collect())
+        Ok(map
+            .entries()
+            .into_iter()
+            .map(|(key, _)| key.clone())
+            .collect())
     })?;
     list_of(cx, keys)
 }
 
 pub(super) fn map_values(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let values = on_map(cx, args, |map| {
-        Ok(map.entries().map(|(_, value)| value.clone()).collect())
+        Ok(map
+            .entries()
+            .into_iter()
+            .map(|(_, value)| value.clone())
+            .collect())
     })?;
     list_of(cx, values)
 }
 
-fn list_of(cx: &Context<'_>, values: Vec<Value>) -> Result<Value, Trap> {
+pub(super) fn list_of(cx: &Context<'_>, values: Vec<Value>) -> Result<Value, Trap> {
     let mut list = List {
         values,
         ..List::default()

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, collections, light, new_object, random, shaders, strings, vectors,
+    Arguments, Context, Maker, collections, data, files, light, more, new_object, random, shaders,
+    strings, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -34,12 +35,35 @@ pub fn constructor(id: C) -> Maker {
         C::List | C::ListCapacity => collections::make_list,
         C::ListCopy => collections::make_list_copy,
         C::Map => collections::make_map,
+        C::Set => collections::make_map_set,
+        C::SetCopy => collections::make_set_copy,
+        C::MapCapacity | C::MapEmpty => collections::make_map,
+        C::Tokens | C::TokensBetween => more::make_tokens,
+        C::Dataset | C::DatasetNamed => data::make,
+        C::File | C::FileIn => files::make_file,
+        C::ReaderPath | C::ReaderFile | C::ScannerPath => files::make_reader,
+        C::ReaderOf | C::ScannerOf | C::WriterOf | C::WriterOfFlushed => files::make_same,
+        C::WriterPath | C::WriterFile | C::WriterAppend | C::WriterFileAppend => files::make_writer,
+        C::SwitchShader2 | C::SideShader => first_of,
+        C::SwitchShader3 => second_of,
+        C::RgbColorZero => shaders::make_color,
+        C::ShaderOfColor => shaders::make_of_color,
+        C::LightModelLeast => light::make_model,
         C::Buffer | C::BufferText | C::Builder | C::BuilderText => strings::make_buffer,
         C::Throwable => throwable,
         C::ThrowableText => throwable_with_text,
         C::String => strings::make_empty,
         C::StringCopy => strings::make_copy,
     }
+}
+
+/// A shader that stands for several: the one that pictures show.
+fn first_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    Ok(args.at(0).clone())
+}
+
+fn second_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    Ok(args.at(1).clone())
 }
 
 fn boxed(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {

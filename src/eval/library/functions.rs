@@ -4,7 +4,7 @@ use super::Behaviour::{
     self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2,
     Native,
 };
-use super::{format, numbers, places, precise, random, strings, system};
+use super::{data, format, more, numbers, places, precise, random, shaders, strings, system};
 use crate::library::FunctionId as F;
 use crate::math::functions as math;
 
@@ -35,6 +35,22 @@ pub fn function(id: F) -> Behaviour {
         F::DistanceSquaredNodes => Native(places::distance_squared),
         F::DistancePoints => Native(places::distance_of_points),
         F::AngleNode => Native(places::angle),
+        F::Chart | F::ChartNamed => Native(data::chart),
+        F::ShaderNamed => Native(shaders::named),
+        F::Export3d | F::Snapshot | F::RunLater | F::Workbench | F::RepaintView | F::Gc => {
+            Native(system::nothing)
+        }
+        F::DefaultView => Native(system::view),
+        F::Exit => Native(system::exit),
+        F::ArraysToString => Native(more::array_text),
+        F::ArraysSort => Native(more::sort_array),
+        F::ArraysFill => Native(more::fill_array),
+        F::ArraysAsList => Native(more::as_list),
+        F::CollectionsSort => Native(more::sort),
+        F::CollectionsReverse => Native(more::reverse),
+        F::CollectionsShuffle => Native(more::shuffle),
+        F::CollectionsMin => Native(more::least),
+        F::CollectionsMax => Native(more::greatest),
         F::AttributeRadius => Native(places::radius),
         F::AttributeDtgColor => Native(places::color_index),
         F::AttributeShader => Native(places::shader),

@@ -6,10 +6,13 @@
 
 mod collections;
 mod constructors;
+pub mod data;
+pub mod files;
 mod format;
 mod functions;
 mod light;
 mod methods;
+pub mod more;
 mod numbers;
 mod places;
 mod precise;

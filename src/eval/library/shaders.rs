@@ -18,6 +18,11 @@ pub(super) fn half_gray() -> Value {
     new_object(ClassId::RGBAShader, Data::Shader([0.5, 0.5, 0.5, 1.0]))
 }
 
+/// `shader("name")`: the project's shaders are not read, so that it is gray.
+pub(super) fn named(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    Ok(half_gray())
+}
+
 pub(super) fn make_gray(_: &mut Context<'_>, _: ClassId, _: &[Value]) -> Result<Value, Trap> {
     Ok(half_gray())
 }
@@ -48,6 +53,49 @@ pub(super) fn make_rgba(
         class,
         Data::Shader([0, 1, 2, 3].map(|i| args.float(i))),
     ))
+}
+
+pub(super) fn make_of_color(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let color = match &*cx.object(args, 0)?.lock() {
+        Data::Color(c) => c.map(|x| x as f32),
+        _ => [0.5; 3],
+    };
+    let [r, g, b] = color;
+    Ok(new_object(class, Data::Shader([r, g, b, 1.0])))
+}
+
+/// `color.set(…)`; of the colour of a light it changes the light.
+pub(super) fn set_rgb(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let new = if args.len() > 2 {
+        [1, 2, 3].map(|i| args.double(i))
+    } else {
+        match &*cx.object(args, 1)?.lock() {
+            Data::Color(c) => *c,
+            _ => return Ok(Value::Null),
+        }
+    };
+    let light = match &mut *cx.object(args, 0)?.lock() {
+        Data::Color(c) => {
+            *c = new;
+            return Ok(Value::Null);
+        }
+        Data::LightColor(light) => std::sync::Arc::clone(light),
+        _ => return Ok(Value::Null),
+    };
+    if let Data::Light(light) = &mut *light.lock() {
+        light.color = new.map(|x| x as f32);
+    }
+    Ok(Value::Null)
+}
+
+/// `light.getColor()`.
+pub(super) fn light_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let light = std::sync::Arc::clone(cx.object(args, 0)?);
+    Ok(new_object(ClassId::RGBColor, Data::LightColor(light)))
 }
 
 pub(super) fn make_color(

@@ -186,14 +186,12 @@ pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 /// kin are known); empty parts at the end are dropped.
 pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let (text, separator) = (receiver(cx, args)?.as_str(), other(cx, args)?);
-    let mut parts: Vec<&str> = match separator {
-        "\\s+" | " +" | "\\s" | "[ ]+" => split_at_blanks(text),
-        "\\t" => text.split('\t').collect(),
-        "" => text.split_inclusive(|_| true).collect(),
-        literal => match literal.strip_prefix('\\') {
-            Some(escaped) if escaped.chars().count() == 1 => text.split(escaped).collect(),
-            _ => text.split(literal).collect(),
-        },
+    let mut parts: Vec<&str> = match Separator::of(separator) {
+        Some(Separator::Blanks) => split_at_blanks(text),
+        Some(Separator::Text(t)) if t.is_empty() => text.split_inclusive(|_| true).collect(),
+        Some(Separator::Text(t)) => text.split(&*t).collect(),
+        Some(Separator::Any(set)) => text.split(|c| set.contains(&c)).collect(),
+        None => return Err(no_pattern(cx, separator)),
     };
     while parts.len() > 1 && parts.last().is_some_and(|part| part.is_empty()) {
         parts.pop();
@@ -213,6 +211,100 @@ pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
 }
 
 /// A text that begins with blanks has an empty first part, as in Java.
+/// What a text is split at: the few patterns that models use.
+enum Separator {
+    Blanks,
+    Text(String),
+    Any(Vec<char>),
+}
+
+impl Separator {
+    /// The pattern, if it is one of those.
+    fn of(pattern: &str) -> Option<Self> {
+        let escaped = |rest: &str| match rest {
+            "t" => Some("\t".to_owned()),
+            "n" => Some("\n".to_owned()),
+            c if c.chars().count() == 1 && !c.contains(char::is_alphanumeric) => Some(c.to_owned()),
+            _ => None,
+        };
+        if matches!(
+            pattern,
+            "\\s+" | " +" | "\\s" | "[ ]+" | "\\s*" | "[\\s]+" | "[ \t]+"
+        ) {
+            return Some(Self::Blanks);
+        }
+        if let Some(rest) = pattern.strip_prefix('\\') {
+            return escaped(rest).map(Self::Text);
+        }
+        let set = pattern.strip_prefix('[').and_then(|p| p.strip_suffix(']'));
+        if let Some(set) = set {
+            let is_plain = !set.contains(['\\', '-', '^', '[', ']', '&']);
+            return is_plain.then(|| Self::Any(set.chars().collect()));
+        }
+        let meta = [
+            '\\', '[', ']', '(', ')', '{', '}', '*', '+', '?', '^', '$', '.', '|',
+        ];
+        // One sign alone that means something in patterns only together with others is meant as it stands.
+        let is_plain = !pattern.contains(meta) || matches!(pattern, "{" | "}" | "]");
+        is_plain.then(|| Self::Text(pattern.to_owned()))
+    }
+}
+
+fn no_pattern(cx: &Context<'_>, pattern: &str) -> Trap {
+    let message = format!(
+        "the regular expression \"{pattern}\" is not supported; known are plain texts, `[,;]` and `\\s+`"
+    );
+    cx.exception(ClassId::UnsupportedOperationException, message)
+}
+
+/// `text.replaceAll(pattern, text)`
+pub(super) fn replace_all(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, pattern) = (receiver(cx, args)?.as_str(), other(cx, args)?);
+    let new = args.text(2);
+    let replaced = match Separator::of(pattern) {
+        Some(Separator::Text(t)) => text.replace(&*t, new),
+        Some(Separator::Any(set)) => text.replace(&*set, new),
+        Some(Separator::Blanks) => replace_blanks(text, new, pattern.contains('+')),
+        None => return Err(no_pattern(cx, pattern)),
+    };
+    cx.new_text(replaced)
+}
+
+/// With every blank, or every run of blanks, replaced.
+fn replace_blanks(text: &str, new: &str, is_run: bool) -> String {
+    let (mut out, mut was_blank) = (String::new(), false);
+    for c in text.chars() {
+        let is_blank = c.is_whitespace();
+        if !is_blank {
+            out.push(c);
+        } else if !(is_run && was_blank) {
+            out.push_str(new);
+        }
+        was_blank = is_blank;
+    }
+    out
+}
+
+pub(super) fn replace_first(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, pattern) = (receiver(cx, args)?.as_str(), other(cx, args)?);
+    match Separator::of(pattern) {
+        Some(Separator::Text(t)) => cx.new_text(text.replacen(&*t, args.text(2), 1)),
+        Some(Separator::Any(set)) => cx.new_text(text.replacen(&*set, args.text(2), 1)),
+        _ => Err(no_pattern(cx, pattern)),
+    }
+}
+
+pub(super) fn index_of_char_from(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let wanted = char_of(args.int(1) as u16).to_string();
+    let from = usize::try_from(args.int(2)).unwrap_or(0);
+    Ok(place(receiver(cx, args)?.find(&wanted, from)))
+}
+
+pub(super) fn last_index_of_char(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let wanted = char_of(args.int(1) as u16).to_string();
+    Ok(place(receiver(cx, args)?.rfind(&wanted)))
+}
+
 fn split_at_blanks(text: &str) -> Vec<&str> {
     let first = text.starts_with(char::is_whitespace).then_some("");
     first.into_iter().chain(text.split_whitespace()).collect()

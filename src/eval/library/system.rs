@@ -29,6 +29,21 @@ pub(super) fn print_text(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, 
     Ok(Value::Null)
 }
 
+/// A window that does nothing.
+pub(super) fn view(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    Ok(super::new_object(
+        crate::library::ClassId::View3D,
+        crate::eval::object::Data::Throwable(None),
+    ))
+}
+
+/// `System.exit(n)`.
+pub(super) fn exit(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let message = format!("the model ended the run by `System.exit({})`", args.int(0));
+    let hint = "end the growth with `--steps`, and leave this call out";
+    Err(Trap::limit("model-exit", message, hint, Some(cx.span)))
+}
+
 /// Applies what the rules have queued.
 pub(super) fn derive(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     cx.machine.derive(cx.span)?;

@@ -1,0 +1,258 @@
+//! The files a model may read and write: those in its own folder, and what the user allows besides.
+
+use std::io;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use super::failure::Failure;
+use super::world::World;
+use crate::eval::files::{FileFault, ModelFiles};
+
+/// Reads a file of the machine, from wherever the model runs.
+pub type ReadFile = Arc<dyn Fn(&Path) -> io::Result<Vec<u8>> + Send + Sync>;
+
+/// Suffixes of files that a model is made of: it cannot write such files.
+const SOURCES: &[&str] = &["rgg", "toml", "xl", "java", "gs", "gsz", "mf"];
+
+/// What the user allows a model besides the files in its own folder.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// Beginnings of paths in the model, and what stands for them here.
+    pub maps: Vec<(String, PathBuf)>,
+    /// Folders that may be used besides the model's own.
+    pub folders: Vec<PathBuf>,
+    /// Where the charts of the model go; without it they are not written.
+    pub charts: Option<PathBuf>,
+}
+
+impl Access {
+    /// Reads the values of `--path-map`, each `FROM=TO`.
+    ///
+    /// # Errors
+    /// If one has no `=`, or nothing on one side of it.
+    pub fn parse(
+        maps: &[String],
+        folders: &[PathBuf],
+        charts: Option<&Path>,
+    ) -> Result<Self, Failure> {
+        let parse = |map: &String| match map.split_once('=') {
+            Some((from, to)) if !from.is_empty() && !to.is_empty() => {
+                Ok((slashes(from), PathBuf::from(to)))
+            }
+            _ => Err(Failure::Usage(format!(
+                "`--path-map {map}` is not of the form FROM=TO, such as `C:/Users/me/data=data`"
+            ))),
+        };
+        Ok(Self {
+            maps: maps.iter().map(parse).collect::<Result<_, _>>()?,
+            folders: folders.to_vec(),
+            charts: charts.map(Path::to_owned),
+        })
+    }
+}
+
+/// The files of one run.
+pub struct ProjectFiles {
+    root: PathBuf,
+    access: Access,
+    read: ReadFile,
+}
+
+impl ProjectFiles {
+    /// The files of the model at `model`, a file or a folder.
+    pub fn new(world: &dyn World, model: &Path, access: &Access) -> Self {
+        let is_folder = world.entry(model) == super::world::Entry::Folder;
+        let root = if is_folder {
+            model
+        } else {
+            super::world::folder_of(model)
+        };
+        Self {
+            root: tidied(root),
+            access: access.clone(),
+            read: world.reader(),
+        }
+    }
+
+    /// The path on this machine, if the model may use it.
+    fn resolve(&self, path: &str) -> Result<PathBuf, FileFault> {
+        let plain = slashes(path);
+        let mapped = self
+            .access
+            .maps
+            .iter()
+            .filter(|(from, _)| plain.starts_with(from.as_str()))
+            .max_by_key(|(from, _)| from.len());
+        if let Some((from, to)) = mapped {
+            let rest = plain[from.len()..].trim_start_matches('/');
+            return Ok(tidied(&if rest.is_empty() {
+                to.clone()
+            } else {
+                to.join(rest)
+            }));
+        }
+        let has_drive = plain.as_bytes().get(1) == Some(&b':');
+        let place = tidied(&if has_drive {
+            PathBuf::from(&plain)
+        } else {
+            self.root.join(&plain)
+        });
+        let mut allowed = self.access.folders.iter().map(|folder| tidied(folder));
+        let is_inside = !has_drive && place.starts_with(&self.root) && !escapes(&place, &self.root);
+        if is_inside || allowed.any(|folder| place.starts_with(folder)) {
+            return Ok(place);
+        }
+        Err(refusal(path, &plain, has_drive))
+    }
+}
+
+/// Whether a tidied path that begins like its root leads out of it all the same.
+fn escapes(place: &Path, root: &Path) -> bool {
+    let rest = place.strip_prefix(root).unwrap_or(place);
+    rest.components().any(|part| part == Component::ParentDir)
+}
+
+fn refusal(path: &str, plain: &str, has_drive: bool) -> FileFault {
+    let folder = plain.rsplit_once('/').map_or(plain, |(folder, _)| folder);
+    let hint = if has_drive {
+        format!("say where it is here: `--path-map '{folder}=FOLDER'`")
+    } else {
+        format!(
+            "allow it with `--allow-path '{folder}'`, or say where it is with `--path-map '{folder}=FOLDER'`"
+        )
+    };
+    FileFault::Refused {
+        message: format!("the model uses the file `{path}`, which is outside of its folder"),
+        hint,
+    }
+}
+
+/// The path with `/` between its parts.
+fn slashes(path: &str) -> String {
+    path.replace('\\', "/")
+}
+
+/// The path without `.` and, as far as they have something to undo, without `..`.
+fn tidied(path: &Path) -> PathBuf {
+    let mut tidy = PathBuf::new();
+    for part in path.components() {
+        match (part, tidy.components().next_back()) {
+            (Component::CurDir, _) => {}
+            (Component::ParentDir, Some(Component::Normal(_))) => {
+                tidy.pop();
+            }
+            (Component::ParentDir, Some(Component::RootDir)) => {}
+            _ => tidy.push(part),
+        }
+    }
+    tidy
+}
+
+impl ModelFiles for ProjectFiles {
+    fn place(&self, path: &str) -> Result<String, FileFault> {
+        Ok(self.resolve(path)?.to_string_lossy().into_owned())
+    }
+
+    fn read(&self, path: &str) -> Result<String, FileFault> {
+        let place = self.resolve(path)?;
+        match (self.read)(&place) {
+            Ok(bytes) => Ok(String::from_utf8(bytes)
+                .unwrap_or_else(|e| e.into_bytes().iter().map(|&b| char::from(b)).collect())),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Err(FileFault::Missing(
+                format!("{} (No such file or directory)", place.display()),
+            )),
+            Err(error) => Err(FileFault::Failed(format!("{} ({error})", place.display()))),
+        }
+    }
+
+    fn may_write(&self, path: &str) -> Result<String, FileFault> {
+        let place = self.resolve(path)?;
+        let suffix = place
+            .extension()
+            .map(|s| s.to_string_lossy().to_lowercase());
+        if suffix.is_some_and(|suffix| SOURCES.contains(&suffix.as_str())) {
+            return Err(FileFault::Refused {
+                message: format!(
+                    "the model writes the file `{path}`, which could be a part of a model"
+                ),
+                hint: "write to a file with another suffix, such as `.txt`".to_owned(),
+            });
+        }
+        Ok(place.to_string_lossy().into_owned())
+    }
+}
+
+/// Writes what a model has written, each file whole or not at all.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write_all(
+    world: &dyn World,
+    written: impl IntoIterator<Item = (String, String)>,
+) -> Result<(), Failure> {
+    for (place, text) in written {
+        let path = Path::new(&place);
+        let folder = super::world::folder_of(path);
+        world
+            .create_folder(folder)
+            .map_err(|e| Failure::file("make folder", folder, &e))?;
+        world
+            .replace(path, text.as_bytes())
+            .map_err(|e| Failure::file("write", path, &e))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::world::fake::FakeWorld;
+
+    fn files(access: &Access) -> (FakeWorld, ProjectFiles) {
+        let world = FakeWorld::default();
+        for file in ["m/a.rgg", "m/in.csv", "data/x.csv", "secret.txt"] {
+            world.put(file, file);
+        }
+        let files = ProjectFiles::new(&world, Path::new("m"), access);
+        (world, files)
+    }
+
+    fn refused(result: Result<String, FileFault>) -> String {
+        match result {
+            Err(FileFault::Refused { hint, .. }) => hint,
+            other => format!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_model_reads_its_own_folder_and_no_other() {
+        let (_, files) = files(&Access::default());
+        assert_eq!(files.read("in.csv").unwrap(), "m/in.csv");
+        assert_eq!(files.read("./sub/..\\in.csv").unwrap(), "m/in.csv");
+        assert!(matches!(files.read("none.csv"), Err(FileFault::Missing(_))));
+        for path in ["../secret.txt", "/etc/passwd", "a/../../secret.txt"] {
+            assert!(refused(files.read(path)).contains("--allow-path"), "{path}");
+        }
+        let hint = refused(files.read("C:\\Users\\me\\x.csv"));
+        assert!(hint.contains("--path-map 'C:/Users/me=FOLDER'"), "{hint}");
+    }
+
+    #[test]
+    fn paths_are_mapped_and_folders_allowed() {
+        let maps = ["C:\\Users\\me=data".to_owned()];
+        let access = Access::parse(&maps, &[PathBuf::from("data")], None).unwrap();
+        let (_, files) = files(&access);
+        assert_eq!(files.read("C:\\Users\\me\\x.csv").unwrap(), "data/x.csv");
+        assert_eq!(files.read("c/../../data/x.csv").unwrap(), "data/x.csv");
+        assert!(Access::parse(&["C:/x".to_owned()], &[], None).is_err());
+    }
+
+    #[test]
+    fn sources_are_never_written() {
+        let (world, files) = files(&Access::default());
+        assert!(refused(files.may_write("a.rgg")).contains("suffix"));
+        let place = files.may_write("out/t.txt").unwrap();
+        write_all(&world, [(place, "text".to_owned())]).unwrap();
+        assert_eq!(files.read("out/t.txt").unwrap(), "text");
+    }
+}
