@@ -250,12 +250,12 @@ fn marks([from, to]: [f64; 2]) -> Vec<f64> {
     let first = (from / step).ceil();
     (0..20)
         .map(|i| (first + f64::from(i)) * step)
-        .take_while(|v| *v <= to + 1e-9 * step)
+        .take_while(|v| *v <= to + step / 1024.0)
         .collect()
 }
 
 fn number(x: f64) -> String {
-    if x != 0.0 && !(1e-3..1e6).contains(&x.abs()) {
+    if x != 0.0 && !(0.001..1_000_000.0).contains(&x.abs()) {
         return format!("{x:.2e}");
     }
     let text = format!("{x:.4}");
