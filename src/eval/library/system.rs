@@ -32,7 +32,7 @@ pub(super) fn print_text(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, 
 /// A window that does nothing.
 pub(super) fn view(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     Ok(super::new_object(
-        crate::library::ClassId::View3D,
+        ClassId::View3D,
         crate::eval::object::Data::Throwable(None),
     ))
 }
