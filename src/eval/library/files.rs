@@ -1,4 +1,4 @@
-//! Reading and writing of text files. What may be read and written is up to the [`ModelFiles`] of the machine; what a model
+//! Reading and writing of text files. What may be read and written is up to the [`ModelFiles`](crate::eval::files::ModelFiles) of the machine; what a model
 //! writes is kept whole until the run is over.
 
 use super::{Arguments, Context, new_object};
