@@ -11,6 +11,9 @@ use crate::eval::files::{FileFault, ModelFiles};
 /// Reads a file of the machine, from wherever the model runs.
 pub type ReadFile = Arc<dyn Fn(&Path) -> io::Result<Vec<u8>> + Send + Sync>;
 
+/// Where a path leads to, from wherever the model runs.
+pub type RealPath = Arc<dyn Fn(&Path) -> PathBuf + Send + Sync>;
+
 /// Suffixes of files that a model is made of: it cannot write such files.
 const SOURCES: &[&str] = &["rgg", "toml", "xl", "java", "gs", "gsz", "mf"];
 
@@ -56,6 +59,7 @@ pub struct ProjectFiles {
     root: PathBuf,
     access: Access,
     read: ReadFile,
+    real: RealPath,
 }
 
 impl ProjectFiles {
@@ -71,45 +75,58 @@ impl ProjectFiles {
             root: tidied(root),
             access: access.clone(),
             read: world.reader(),
+            real: world.real_paths(),
         }
     }
 
     /// The path on this machine, if the model may use it.
     fn resolve(&self, path: &str) -> Result<PathBuf, FileFault> {
         let plain = slashes(path);
-        let mapped = self
-            .access
-            .maps
-            .iter()
-            .filter(|(from, _)| plain.starts_with(from.as_str()))
-            .max_by_key(|(from, _)| from.len());
-        if let Some((from, to)) = mapped {
-            let rest = plain[from.len()..].trim_start_matches('/');
-            return Ok(tidied(&if rest.is_empty() {
-                to.clone()
-            } else {
-                to.join(rest)
-            }));
-        }
         let has_drive = plain.as_bytes().get(1) == Some(&b':');
-        let place = tidied(&if has_drive {
-            PathBuf::from(&plain)
+        let (place, is_allowed) = match self.mapped(&plain) {
+            Some((place, folder)) => {
+                let is_allowed = self.holds(folder, &place);
+                (place, is_allowed)
+            }
+            None if has_drive => (PathBuf::from(&plain), false),
+            None => {
+                let place = tidied(&self.root.join(&plain));
+                let mut folders = self.access.folders.iter();
+                let is_allowed = self.holds(&self.root, &place)
+                    || folders.any(|folder| self.holds(folder, &place));
+                (place, is_allowed)
+            }
+        };
+        if is_allowed {
+            Ok(place)
         } else {
-            self.root.join(&plain)
-        });
-        let mut allowed = self.access.folders.iter().map(|folder| tidied(folder));
-        let is_inside = !has_drive && place.starts_with(&self.root) && !escapes(&place, &self.root);
-        if is_inside || allowed.any(|folder| place.starts_with(folder)) {
-            return Ok(place);
+            Err(refusal(path, &plain, has_drive))
         }
-        Err(refusal(path, &plain, has_drive))
+    }
+
+    /// What `--path-map` makes of a path, with the folder it is mapped to. Of several maps, the longest counts.
+    fn mapped(&self, plain: &str) -> Option<(PathBuf, &Path)> {
+        let maps = self.access.maps.iter();
+        let fitting = maps.filter_map(|(from, to)| Some((rest_of(plain, from)?, to)));
+        let (rest, to) = fitting.min_by_key(|(rest, _)| rest.len())?;
+        Some((tidied(&to.join(rest)), to))
+    }
+
+    /// Whether `folder` holds `place`, as both are written and after all symbolic links.
+    fn holds(&self, folder: &Path, place: &Path) -> bool {
+        let folder = tidied(folder);
+        let is_written_inside = place.strip_prefix(&folder).is_ok_and(|rest| {
+            let mut parts = rest.components();
+            parts.all(|part| matches!(part, Component::Normal(_)))
+        });
+        is_written_inside && (self.real)(place).starts_with((self.real)(&folder))
     }
 }
 
-/// Whether a tidied path that begins like its root leads out of it all the same.
-fn escapes(place: &Path, root: &Path) -> bool {
-    let rest = place.strip_prefix(root).unwrap_or(place);
-    rest.components().any(|part| part == Component::ParentDir)
+/// What follows `from` in a path, if the path begins with it as a whole.
+fn rest_of<'p>(path: &'p str, from: &str) -> Option<&'p str> {
+    let rest = path.strip_prefix(from.trim_end_matches('/'))?;
+    (rest.is_empty() || rest.starts_with('/')).then(|| rest.trim_start_matches('/'))
 }
 
 fn refusal(path: &str, plain: &str, has_drive: bool) -> FileFault {
@@ -245,6 +262,35 @@ mod tests {
         assert_eq!(files.read("C:\\Users\\me\\x.csv").unwrap(), "data/x.csv");
         assert_eq!(files.read("c/../../data/x.csv").unwrap(), "data/x.csv");
         assert!(Access::parse(&["C:/x".to_owned()], &[], None).is_err());
+        // A map is of whole names of folders, and no way out of the folder it leads to.
+        for path in ["C:\\Users\\meta\\x.csv", "C:\\Users\\me\\..\\secret.txt"] {
+            assert!(refused(files.read(path)).contains("--path-map"), "{path}");
+        }
+    }
+
+    #[test]
+    fn links_lead_nowhere_else_and_the_working_folder_is_not_the_world() {
+        let root = tempfile::tempdir().unwrap();
+        let model = root.path().join("model");
+        std::fs::create_dir(&model).unwrap();
+        std::fs::write(root.path().join("secret.txt"), "secret").unwrap();
+        std::fs::write(model.join("in.txt"), "in").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink(root.path(), model.join("out")).unwrap();
+        let world = crate::pipeline::world::Machine::new();
+        let files = ProjectFiles::new(&world, &model.join("m.rgg"), &Access::default());
+        assert_eq!(files.read("in.txt").unwrap(), "in");
+        assert!(files.may_write("new/t.txt").is_ok());
+        for path in ["out/secret.txt", "out/new.txt"] {
+            assert!(
+                refused(files.may_write(path)).contains("--allow-path"),
+                "{path}"
+            );
+        }
+        let files = ProjectFiles::new(&world, Path::new("m.rgg"), &Access::default());
+        for path in ["/etc/hostname", "../x", "a/../../x"] {
+            assert!(refused(files.read(path)).contains("--allow-path"), "{path}");
+        }
     }
 
     #[test]

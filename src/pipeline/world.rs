@@ -1,6 +1,6 @@
 //! All that a run needs of the machine: files, the clock, memory.
 
-use super::project_files::ReadFile;
+use super::project_files::{ReadFile, RealPath};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,6 +41,9 @@ pub trait World: Sync {
 
     /// Something that reads files as [`read`](Self::read) does and can be given away.
     fn reader(&self) -> ReadFile;
+
+    /// Something that finds where paths lead to after all symbolic links, whether or not anything is there.
+    fn real_paths(&self) -> RealPath;
 
     /// The first `n` bytes of a file, fewer if it is shorter.
     ///
@@ -139,6 +142,23 @@ impl World for Machine {
         Arc::new(|path| Self::new().read(path))
     }
 
+    fn real_paths(&self) -> RealPath {
+        Arc::new(|path| {
+            let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+            // What does not exist yet stands where the nearest folder that does leads to.
+            let found = path.ancestors().find_map(|ancestor| {
+                let real = std::fs::canonicalize(ancestor).ok()?;
+                let rest = path.strip_prefix(ancestor).ok()?;
+                Some(if rest.as_os_str().is_empty() {
+                    real
+                } else {
+                    real.join(rest)
+                })
+            });
+            found.unwrap_or(path)
+        })
+    }
+
     fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
         let mut content = Vec::new();
         std::fs::File::open(path)?
@@ -223,7 +243,7 @@ pub(crate) mod fake {
     //! A machine that exists only in memory.
 
     use super::{Entry, World};
-    use crate::pipeline::project_files::ReadFile;
+    use crate::pipeline::project_files::{ReadFile, RealPath};
     use std::collections::BTreeMap;
     use std::io;
     use std::path::{Path, PathBuf};
@@ -281,6 +301,10 @@ pub(crate) mod fake {
                     .cloned()
                     .ok_or_else(|| io::ErrorKind::NotFound.into())
             })
+        }
+
+        fn real_paths(&self) -> RealPath {
+            Arc::new(Path::to_owned)
         }
 
         fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
