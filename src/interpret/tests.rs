@@ -277,6 +277,18 @@ fn pose(shape: &PlacedShape) -> [f64; 6] {
 }
 
 #[test]
+fn what_is_not_copied_says_so_once() {
+    let mut world = World::new(&[]);
+    let root = world.root();
+    world.grow(root, "[ GridClonerNode F(1) ] GridClonerNode F(1)");
+    let drawn = world.draw();
+    assert_eq!(
+        (slugs(&drawn), shapes(&drawn).len()),
+        (vec!["not-cloned"], 2)
+    );
+}
+
+#[test]
 fn each_node_is_drawn_where_the_turtle_is() {
     let mut world = World::new(&[]);
     let root = world.root();

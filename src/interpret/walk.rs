@@ -53,6 +53,8 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) poses: Poses,
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
+    /// The type of nodes that GroIMP draws in a grid of copies.
+    cloner: Option<TypeId>,
     n_nodes: u64,
     body_nodes: u64,
     /// Emptied, to be used again.
@@ -74,6 +76,7 @@ impl<'s, S: Source> Painter<'s, S> {
         let spans = types.iter().map(|(ty, _)| source.declared_at(ty)).collect();
         let made = types.iter().map(|(ty, _)| source.made_at(ty).to_vec());
         let made = made.collect();
+        let cloner = types.find("GridClonerNode");
         Self {
             source,
             limits,
@@ -83,6 +86,7 @@ impl<'s, S: Source> Painter<'s, S> {
             poses: Poses::default(),
             prototypes: Prototypes::default(),
             instances: Instances::default(),
+            cloner,
             n_nodes: 0,
             body_nodes: 0,
             spare_ways: Vec::new(),
@@ -227,6 +231,13 @@ impl<'s, S: Source> Painter<'s, S> {
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state)?,
             Effect::Draw(_) => self.draw_shape(node, does, state, place)?,
             Effect::Instance => self.draw_instance(node, state, place)?,
+            Effect::Group if self.cloner.is_some() && self.cloner == graph.type_of(node).ok() => {
+                self.warn(
+                    node,
+                    "not-cloned",
+                    "is drawn once: grids of copies are not made",
+                );
+            }
             _ => self.canvas.is_bound |= depends_on_world(does),
         }
         let graph = self.source.graph();
