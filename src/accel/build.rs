@@ -12,7 +12,7 @@
 //! above, where its subtrees meet those of its neighbours.
 //!
 //! Beside the top-down builder on binned centroids that stood here before, in million rays per second of one thread
-//! (`cargo bench --bench kernel`, two cores of a Xeon at 2.1 GHz that others used too):
+//! (`cargo bench --bench kernel`, two cores of an AMD EPYC that others used too):
 //!
 //! | | before: camera, bounce, sun | now |
 //! |---|---|---|
