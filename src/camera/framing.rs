@@ -8,8 +8,8 @@ use glam::DVec3;
 /// Room left round what is framed, as a part of its size.
 const MARGIN: f64 = 0.12;
 
-/// From what is framed to the eye: south-east of it and a little above.
-const TOWARDS_EYE: DVec3 = DVec3::new(0.5, -1.0, 0.35);
+/// From what is framed to the eye: south-east of it and a little above, so that land and sky both show.
+const TOWARDS_EYE: DVec3 = DVec3::new(0.5, -1.0, 0.2);
 
 /// What is framed.
 #[derive(Clone, Copy)]
