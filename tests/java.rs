@@ -357,8 +357,9 @@ fn tables_are_filled_and_read() {
     let body = "DatasetRef d = new DatasetRef(\"t\"); d.(setColumnKey(0, \"time\"), setColumnKey(1, 7)); chart(d, XY_PLOT);
         d.addRow().(set(0, 1), set(1, 2.5)); d.getRow(2).set(1, 4L); Dataset e = new DatasetRef(\"t\").resolve();
         println(e.getRowCount() + \" \" + e.getColumnCount() + \" \" + e.getColumnKey(1) + \" \" + e.getCell(0, 1) + \" \" + e.getCell(2, 1) + e.getCell(1, 1));
-        d.clear(); println(e.getRowCount());";
-    assert_eq!(printed(body).unwrap(), "3 2 7 2.5 4null\n0\n");
+        d.clear(); println(e.getRowCount());
+        println(d.setTitle(\"u\").setRowKey(0, \"r\").setColumnKey(0, \"a\").setColumnKey(1, \"b\").getColumnKey(1));";
+    assert_eq!(printed(body).unwrap(), "3 2 7 2.5 4null\n0\nb\n");
 }
 
 #[test]

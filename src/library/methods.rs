@@ -175,10 +175,10 @@ signatures! {
 
     DatasetResolve = "DatasetRef"."resolve"() -> Class(ClassId::Dataset), Pure, "", "The table itself.";
     DatasetClear = "Dataset"."clear"() -> Void, Writes, "", "Removes all rows and names.";
-    DatasetSetTitle = "Dataset"."setTitle"(String) -> Void, Writes, "", "Name of the table.";
-    DatasetSetColumnKey = "Dataset"."setColumnKey"(Int, Object) -> Void, Writes, "", "Name of a column.";
+    DatasetSetTitle = "Dataset"."setTitle"(String) -> Class(ClassId::Dataset), Writes, "", "Name of the table; gives the table.";
+    DatasetSetColumnKey = "Dataset"."setColumnKey"(Int, Object) -> Class(ClassId::Dataset), Writes, "", "Name of a column; gives the table.";
     DatasetColumnKey = "Dataset"."getColumnKey"(Int) -> Object, Pure, "", "Name of a column.";
-    DatasetSetRowKey = "Dataset"."setRowKey"(Int, Object) -> Void, Writes, "", "Name of a row.";
+    DatasetSetRowKey = "Dataset"."setRowKey"(Int, Object) -> Class(ClassId::Dataset), Writes, "", "Name of a row; gives the table.";
     DatasetRowKey = "Dataset"."getRowKey"(Int) -> Object, Pure, "", "Name of a row.";
     DatasetColumnCount = "Dataset"."getColumnCount"() -> Int, Pure, "", "Number of columns.";
     DatasetRowCount = "Dataset"."getRowCount"() -> Int, Pure, "", "Number of rows.";

@@ -148,7 +148,7 @@ pub(super) fn clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
 pub(super) fn set_title(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     on_table(cx, args, |table| {
         table.title = args.text(1).to_owned();
-        Ok(Value::Null)
+        Ok(args.at(0).clone())
     })
 }
 
@@ -159,7 +159,7 @@ pub(super) fn set_column_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Val
             table.columns.resize(column + 1, Value::Null);
         }
         table.columns[column] = args.at(2).clone();
-        Ok(Value::Null)
+        Ok(args.at(0).clone())
     })
 }
 
@@ -174,7 +174,7 @@ pub(super) fn set_row_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value,
     let row = side(cx, args.int(1))?;
     on_table(cx, args, |table| {
         ensure(cx, table, row, None)?.key = args.at(2).clone();
-        Ok(Value::Null)
+        Ok(args.at(0).clone())
     })
 }
 
