@@ -140,8 +140,12 @@ impl<O: Payload> Graph<O> {
         InEdges { graph: self, at }
     }
 
-    /// The node whose frame a node inherits: the source of its first incoming successor or branch edge.
+    /// The node whose frame a node inherits: the source of its first incoming successor or branch edge. The root has none, even
+    /// where a rule has led an edge back to it: all frames begin there.
     pub fn predecessor(&self, node: NodeId) -> Option<(NodeId, EdgeBits)> {
+        if node == self.root() {
+            return None;
+        }
         let carries = EdgeBits::SUCCESSOR.union(EdgeBits::BRANCH);
         self.in_edges(node)
             .find(|(_, bits)| bits.intersects(carries))
