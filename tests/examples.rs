@@ -2,93 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "support/opened.rs"]
+mod opened;
+
+use opened::Opened;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use understory::diag::{Diagnostics, SourceMap};
 use understory::film::LinearImage;
-use understory::growth::Growth;
-use understory::integrator::CancelToken;
-use understory::options::{Options, Origin};
-use understory::pipeline::audience::Audience;
-use understory::pipeline::studio::{Keep, Run, Studio};
-use understory::pipeline::viewing::Viewing;
-use understory::pipeline::viewpoint;
-use understory::pipeline::world::Machine;
 
-/// Keeps what models print; no example may be questionable.
-#[derive(Default)]
-struct Listener {
-    printed: Mutex<String>,
-}
-
-impl Audience for Listener {
-    fn printed(&self, text: &str) {
-        self.printed.lock().unwrap().push_str(text);
-    }
-
-    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
-        panic!("{found:#?} in {sources:?}");
-    }
-
-    fn begins(&self, _: &'static str) {}
-
-    fn progress(&self, _: u64, _: u64) {}
-
-    fn ends(&self) {}
-}
-
-/// An example with some options of its own.
-struct Example {
-    listener: Arc<Listener>,
-    world: Machine,
-    path: PathBuf,
-    flags: Options,
-}
-
-impl Example {
-    fn new(name: &str, flags: &[(&str, &str)]) -> Self {
-        let mut options = Options::default();
-        for (key, text) in flags {
-            options.set(key, text, Origin::Flag).unwrap();
-        }
-        Self {
-            listener: Arc::default(),
-            world: Machine::new(),
-            path: Path::new("examples").join(name),
-            flags: options,
-        }
-    }
-
-    fn open(&self) -> (Studio<'_>, Run) {
-        let (audience, path) = (self.listener.clone(), self.path.clone());
-        let mut studio = Studio::new(&self.world, audience, path, Keep::Last);
-        let opened = studio.read(&self.flags).unwrap();
-        let run = studio.check(opened).unwrap();
-        (studio, run)
-    }
-
-    fn grow(&self) -> Growth {
-        let (mut studio, run) = self.open();
-        studio.grow(&run, &CancelToken::default()).unwrap()
-    }
-
-    /// The picture, and how high what is on it reaches.
-    fn picture(&self) -> (LinearImage, f64) {
-        let (mut studio, run) = self.open();
-        let cancel = CancelToken::default();
-        let scene = studio.build(&run, &cancel).unwrap();
-        let view = viewpoint::of_scene(&run.options, &scene);
-        let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
-        let viewing = Viewing {
-            world: &self.world,
-            audience: &*self.listener,
-            options: &run.options,
-            cancel: &cancel,
-        };
-        let prepared = viewing.prepare(&scene).unwrap();
-        let shot = viewing.shoot(&prepared, &camera).unwrap();
-        (shot.image, scene.bounds().max.z)
-    }
+fn example(name: &str, flags: &[(&str, &str)]) -> Opened {
+    Opened::new(Path::new("examples").join(name), flags)
 }
 
 const SMALL: [(&str, &str); 2] = [("size", "32x32"), ("samples", "4")];
@@ -143,15 +65,16 @@ fn small_models_make_pictures() {
         ("poplar.rgg", 8.0..14.0),
         ("spruce.rgg", 12.0..18.0),
     ] {
-        let (image, height) = Example::new(name, &SMALL).picture();
+        let drawn = example(name, &SMALL).draw();
+        let height = drawn.bounds.max.z;
         assert!(heights.contains(&height), "{name}: {height} m");
-        assert_shows_something(name, &image);
+        assert_shows_something(name, &drawn.image);
     }
 }
 
 #[test]
 fn the_poplar_has_thousands_of_leaves() {
-    let counts = Example::new("poplar.rgg", &[]).grow().counts();
+    let counts = example("poplar.rgg", &[]).grow().counts();
     let n_leaves = counts.iter().find(|(name, _)| name == "Leaf").unwrap().1;
     assert!((4_000..40_000).contains(&n_leaves), "{n_leaves} leaves");
 }
@@ -160,9 +83,7 @@ fn the_poplar_has_thousands_of_leaves() {
 fn a_snowflake_has_three_times_a_power_of_four_sides() {
     for n in 0..=4 {
         let steps = n.to_string();
-        let counts = Example::new("koch.rgg", &[("steps", &steps)])
-            .grow()
-            .counts();
+        let counts = example("koch.rgg", &[("steps", &steps)]).grow().counts();
         let n_sides = counts.iter().find(|(name, _)| name == "Side").unwrap().1;
         // Flake k stops after k steps.
         let expected: usize = (0..=4_u32).map(|flake| 3 * 4_usize.pow(flake.min(n))).sum();
@@ -174,10 +95,9 @@ fn a_snowflake_has_three_times_a_power_of_four_sides() {
 fn the_forest_has_ten_thousand_trees() {
     // Younger than on its picture, which is quicker; the same trees stand at the same places.
     let flags = [SMALL.as_slice(), &[("steps", "20")]].concat();
-    let forest = Example::new("forest.rgg", &flags);
-    let (image, _) = forest.picture();
-    assert_shows_something("forest.rgg", &image);
-    let printed = forest.listener.printed.lock().unwrap().clone();
+    let forest = example("forest.rgg", &flags);
+    assert_shows_something("forest.rgg", &forest.draw().image);
+    let printed = forest.printed();
     let n_trees: usize = printed
         .trim()
         .strip_suffix(" trees")
