@@ -333,8 +333,12 @@ fn a_hover_tells_what_a_word_means() {
             "x:Leaf ::> println(x.old|er(2));",
             "int Leaf.older(int days)",
         ),
-        ("Bud ==> F(Math.s|qrt(2));", "double Math.sqrt(double)"),
+        ("Bud ==> F(Math.s|qrt(2));", "double Math.sqrt(double x)"),
         ("Bud ==> F(ran|dom(1, 2));", "Uniform in [a, b)"),
+        (
+            "Bud ==> F(ran|dom(1, 2));",
+            "float random(float a, float b)",
+        ),
         ("x:F ::> println(x[le|ngth]);", "float length = 1 m"),
         ("Bud ==> F(sum|((* Leaf *)[age]));", "Sum of the values"),
         ("Bud ==> Sphere(1).(setShader(GR|EEN));", "rgb(0, 255, 0)"),

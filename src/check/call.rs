@@ -165,6 +165,7 @@ impl Checker<'_> {
         Overload {
             id: Callee::Method(id),
             params,
+            names: method.param_names(),
             is_varargs: method.is_varargs,
         }
     }

@@ -200,6 +200,7 @@ impl Checker<'_> {
                 Overload {
                     id: method,
                     params: info.params.iter().map(wanted).collect(),
+                    names: info.param_names(),
                     is_varargs: info.is_varargs,
                 }
             })

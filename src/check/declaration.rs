@@ -8,6 +8,7 @@ use crate::graph::{FieldId, TypeId, TypeTable};
 use crate::library::ClassId;
 use crate::syntax::ast;
 use crate::turtle::{self, FieldType};
+use std::borrow::Cow;
 
 /// A file.
 pub(super) struct FileInfo<'a> {
@@ -72,6 +73,19 @@ pub(super) struct MethodInfo<'a> {
     /// `None` where it could not be read.
     pub(super) result: Option<Type>,
     pub(super) source: MethodSource<'a>,
+}
+
+impl MethodInfo<'_> {
+    /// Names of its parameters.
+    pub(super) fn param_names(&self) -> Vec<Cow<'static, str>> {
+        match self.source {
+            MethodSource::Written(method) | MethodSource::Constructor(method) => {
+                let names = method.params.iter().map(|param| &param.name.name);
+                names.map(|name| Cow::Owned(name.clone())).collect()
+            }
+            MethodSource::Initializer(_) => vec![],
+        }
+    }
 }
 
 /// Where the body of a method comes from.

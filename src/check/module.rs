@@ -238,6 +238,7 @@ impl Checker<'_> {
                 Overload {
                     id: *names,
                     params,
+                    names: self.field_names(id, &fields),
                     is_varargs: false,
                 }
             })
@@ -298,6 +299,7 @@ impl Checker<'_> {
             .into_iter()
             .map(|ty| ty.map_or(Wanted::Unknown, Wanted::Value))
             .collect();
+        let names = self.field_names(type_id, &self.modules[module].params);
         let name = self.types[type_id].name.to_string();
         let ((), args) = self.choose(
             &name,
@@ -305,6 +307,7 @@ impl Checker<'_> {
             &[Overload {
                 id: (),
                 params,
+                names,
                 is_varargs: false,
             }],
             args,

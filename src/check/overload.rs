@@ -4,7 +4,9 @@ use super::Checker;
 use super::model::{Expr, ExprKind, Type};
 use super::types::Fit;
 use crate::diag::{Diagnostic, Span};
+use crate::graph::{FieldId, TypeId};
 use crate::library::{Signature, ValueType};
+use std::borrow::Cow;
 
 /// What one parameter takes.
 #[derive(Clone, Debug)]
@@ -21,6 +23,8 @@ pub(super) enum Wanted {
 pub(super) struct Overload<Id> {
     pub(super) id: Id,
     pub(super) params: Vec<Wanted>,
+    /// Names of the parameters, for messages.
+    pub(super) names: Vec<Cow<'static, str>>,
     /// Whether the last parameter is an array that may be given element by element.
     pub(super) is_varargs: bool,
 }
@@ -35,12 +39,22 @@ impl<Id: Copy> Overload<Id> {
         Self {
             id,
             params: params.collect(),
+            names: row.names.iter().map(|&name| Cow::Borrowed(name)).collect(),
             is_varargs: false,
         }
     }
 }
 
 impl Checker<'_> {
+    /// Names of fields as people speak of them.
+    pub(super) fn field_names(&self, ty: TypeId, fields: &[FieldId]) -> Vec<Cow<'static, str>> {
+        let name = |field: &FieldId| match &*self.types[ty].fields[usize::from(field.0)].name {
+            "width.full" => Cow::Borrowed("width"),
+            name => Cow::Owned(name.rsplit('.').next().unwrap_or(name).to_owned()),
+        };
+        fields.iter().map(name).collect()
+    }
+
     /// The overload that suits the arguments best, with the arguments converted; reported if there is none.
     pub(super) fn choose<Id: Copy>(
         &mut self,
@@ -166,40 +180,76 @@ impl Checker<'_> {
         overloads: &[Overload<Id>],
         args: &[Expr],
     ) -> Diagnostic {
-        if let [only] = overloads
-            && only.params.len() == args.len()
-        {
-            let bad = only
-                .params
-                .iter()
-                .zip(args)
-                .find(|(param, arg)| self.param_fit(param, &arg.ty).is_none());
-            if let Some((Wanted::Value(ty), arg)) = bad {
-                return self.mismatch(&arg.ty, ty, arg.span);
+        let mut of_this_length = overloads.iter().filter(|o| o.params.len() == args.len());
+        let (candidate, is_clear) = (of_this_length.next(), of_this_length.next().is_none());
+        if let Some(only) = candidate.filter(|_| is_clear) {
+            let mut pairs = only.params.iter().zip(args).enumerate();
+            let bad = pairs.find(|(_, (param, arg))| self.param_fit(param, &arg.ty).is_none());
+            if let Some((at, (Wanted::Value(ty), arg))) = bad {
+                let fault = self.mismatch(&arg.ty, ty, arg.span);
+                return match only.names.get(at) {
+                    Some(param) => fault.hint(format!(
+                        "it is the `{param}` of `{}`",
+                        self.form(name, only)
+                    )),
+                    None => fault,
+                };
             }
         }
-        let given = self.type_names(args.iter().map(|a| &a.ty));
-        let given = format!("({given})");
         let message = if args.is_empty() {
             format!("`{name}` needs arguments")
+        } else if candidate.is_none() {
+            wrong_count(name, overloads, args.len())
         } else {
-            format!("`{name}` does not take {given}")
+            let given = self.type_names(args.iter().map(|a| &a.ty));
+            format!("`{name}` does not take ({given})")
         };
         let forms: Vec<String> = overloads
             .iter()
             .take(8)
-            .map(|o| format!("`{name}({})`", self.wanted(&o.params)))
+            .map(|o| format!("`{}`", self.form(name, o)))
             .collect();
         Diagnostic::error("wrong-arguments", span, message)
             .hint(format!("it can be called as {}", forms.join(", ")))
     }
 
-    fn wanted(&self, params: &[Wanted]) -> String {
-        let name = |param: &Wanted| match param {
+    /// An overload as it is declared: `F(float length, float diameter)`.
+    fn form<Id>(&self, name: &str, overload: &Overload<Id>) -> String {
+        let ty = |param: &Wanted| match param {
             Wanted::Value(ty) => self.type_name(ty),
-            Wanted::Text => "any value".into(),
+            Wanted::Text => "any".into(),
             Wanted::Unknown => "?".into(),
         };
-        params.iter().map(name).collect::<Vec<_>>().join(", ")
+        let named = |(at, param)| match overload.names.get(at) {
+            Some(name) => format!("{} {name}", ty(param)),
+            None => ty(param),
+        };
+        let params = overload.params.iter().enumerate().map(named);
+        format!("{name}({})", params.collect::<Vec<_>>().join(", "))
     }
+}
+
+/// `F` takes 0 to 3 arguments, 4 are given.
+fn wrong_count<Id>(name: &str, overloads: &[Overload<Id>], given: usize) -> String {
+    let counts = || overloads.iter().map(|o| o.params.len());
+    let (least, most) = (
+        counts().min().unwrap_or_default(),
+        counts().max().unwrap_or_default(),
+    );
+    let takes = match (least, most) {
+        (0, 0) => "no arguments".to_owned(),
+        (1, 1) => "1 argument".to_owned(),
+        (least, most) if least == most => format!("{least} arguments"),
+        (0, 1) => "at most 1 argument".to_owned(),
+        (least, most) if counts().all(|n| n == least || n == most) => {
+            format!("{least} or {most} arguments")
+        }
+        (0, most) => format!("at most {most} arguments"),
+        (least, most) => format!("{least} to {most} arguments"),
+    };
+    let given = match given {
+        1 => "1 is given".to_owned(),
+        n => format!("{n} are given"),
+    };
+    format!("`{name}` takes {takes}, {given}")
 }

@@ -9,6 +9,7 @@ use super::overload::{Overload, Wanted};
 use crate::diag::Span;
 use crate::graph::{FieldId, TypeId};
 use crate::library::{ClassId, ConstructorId};
+use std::borrow::Cow;
 
 /// A getter or setter.
 #[derive(Clone, Copy, Debug)]
@@ -95,9 +96,21 @@ impl Checker<'_> {
             Accessor::SetColor => vec![Wanted::Value(Type::Float); 3],
             Accessor::SetColorBits => vec![Wanted::Value(Type::Int)],
         };
+        let names = match accessor {
+            Accessor::Set(field) => self.field_names(id, &[field]),
+            Accessor::SetAll(names) => names
+                .iter()
+                .filter_map(|n| Some(self.field_names(id, &[self.types.field(id, n)?])))
+                .flatten()
+                .collect(),
+            Accessor::SetColor => ["red", "green", "blue"].map(Cow::Borrowed).to_vec(),
+            Accessor::SetColorBits => vec![Cow::Borrowed("rgb")],
+            Accessor::Get(_) | Accessor::GetAxis => vec![],
+        };
         Overload {
             id: Callee::Accessor(accessor),
             params,
+            names,
             is_varargs: false,
         }
     }

@@ -734,7 +734,7 @@ fn faults_are_named_once_each_with_advice() {
         (
             "void f() [ Axiom ==> Cylinder(2); ]",
             &[
-                "1: wrong-arguments: `Cylinder` does not take (int) | it can be called as `Cylinder()`, `Cylinder(float, float)`",
+                "1: wrong-arguments: `Cylinder` takes 0 or 2 arguments, 1 is given | it can be called as `Cylinder()`, `Cylinder(float length, float radius)`",
             ],
         ),
     ]);

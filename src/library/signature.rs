@@ -29,6 +29,8 @@ pub struct Signature {
     pub name: &'static str,
     /// Types of its parameters.
     pub params: &'static [ValueType],
+    /// Names of its parameters, for people: nothing can be passed by name.
+    pub names: &'static [&'static str],
     /// Type of its value.
     pub result: ValueType,
     /// What it does besides.
@@ -70,9 +72,9 @@ pub(super) fn index<Id: Copy + Eq + Hash>(
     Index(by_owner)
 }
 
-/// Declares an enum of overloads and their table: `Variant = owner.name(params) -> result, effect, unit, doc;`.
+/// Declares an enum of overloads and their table: `Variant = owner.name(Type name, …) -> result, effect, unit, doc;`.
 macro_rules! signatures {
-    ($(#[$meta:meta])* $id:ident; $($variant:ident = $owner:literal . $name:literal ($($param:expr),*) -> $result:expr, $effect:ident, $unit:literal, $doc:literal;)*) => {
+    ($(#[$meta:meta])* $id:ident; $($variant:ident = $owner:literal . $name:literal ($($ty:ident $(($class:expr))? $param:ident),*) -> $result:expr, $effect:ident, $unit:literal, $doc:literal;)*) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u16)]
@@ -89,7 +91,8 @@ macro_rules! signatures {
         }
 
         static SIGNATURES: &[Signature] = &[$(Signature {
-            owner: $owner, name: $name, params: &[$($param),*], result: $result, effect: Effect::$effect, unit: $unit, doc: $doc,
+            owner: $owner, name: $name, params: &[$($ty $(($class))?),*], names: &[$(stringify!($param)),*],
+            result: $result, effect: Effect::$effect, unit: $unit, doc: $doc,
         },)*];
     };
 }
@@ -106,6 +109,8 @@ mod tests {
         for row in rows {
             let what = format!("{}.{}{:?}", row.owner, row.name, row.params);
             assert!(row.doc.ends_with('.') && row.doc.len() > 3, "{what}: doc");
+            let different: HashSet<_> = row.names.iter().collect();
+            assert_eq!(different.len(), row.params.len(), "{what}: names");
             assert!(seen.insert(what.clone()), "{what}: twice");
         }
         assert!(seen.len() > 10);

@@ -14,7 +14,7 @@ pub fn type_name(ty: ValueType) -> &'static str {
         ValueType::Float => "float",
         ValueType::Double => "double",
         ValueType::String => "String",
-        ValueType::Text => "any value",
+        ValueType::Text => "any",
         ValueType::Object => "Object",
         ValueType::Node => "Node",
         ValueType::Class(class) => class.name(),
@@ -48,10 +48,15 @@ pub fn field_name(name: &str) -> &str {
     }
 }
 
-/// `float random(float, float)`, `double Math.sin(double)`, `new Vector3d(double, double, double)`.
+/// The parameters of a call, one by one: `double angle`.
+pub fn params(row: &Signature) -> Vec<String> {
+    let named = |(ty, name): (&ValueType, &&str)| format!("{} {name}", type_name(*ty));
+    row.params.iter().zip(row.names).map(named).collect()
+}
+
+/// `float random(float a, float b)`, `double Math.sin(double angle)`, `new Vector3d(double x, double y, double z)`.
 pub fn call(row: &Signature) -> String {
-    let params: Vec<&str> = row.params.iter().map(|ty| type_name(*ty)).collect();
-    let params = params.join(", ");
+    let params = params(row).join(", ");
     if row.name == "new" {
         return format!("new {}({params})", row.owner);
     }
@@ -142,14 +147,17 @@ mod tests {
 
     #[test]
     fn signatures_are_written_as_in_java() {
-        assert_eq!(call(FunctionId::Sin.signature()), "double Math.sin(double)");
+        assert_eq!(
+            call(FunctionId::Sin.signature()),
+            "double Math.sin(double angle)"
+        );
         assert_eq!(
             call(FunctionId::PrintText.signature()),
             "void print(any value)"
         );
         assert_eq!(
             call(ConstructorId::TupleOf.signature()),
-            "new Tuple3d(double, double, double)"
+            "new Tuple3d(double x, double y, double z)"
         );
         let f = builtin_named("F").unwrap();
         assert_eq!(constructors(f)[..2], ["F", "F(length)"]);
