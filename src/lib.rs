@@ -22,7 +22,6 @@ pub mod math;
 pub mod color;
 pub mod diag;
 pub mod references;
-pub mod options;
 
 // ── language ──
 pub mod syntax;
@@ -52,6 +51,7 @@ pub mod integrator;
 // ── output and shell ──
 pub mod image;
 pub mod animation;
+pub mod options;
 pub mod pipeline;
 pub mod watch;
 pub mod lsp;

@@ -63,6 +63,10 @@
 //! F. Kasten, A. Young: Revised Optical Air Mass Tables and Approximation Formula. Applied Optics 28(22), 1989.
 //! <https://doi.org/10.1364/AO.28.004735>
 //!
+//! # KrochmannSeidl1974
+//! J. Krochmann, M. Seidl: Quantitative Data on Daylight for Illuminating Engineering. Lighting Research and Technology 6(3),
+//! 1974. <https://doi.org/10.1177/096032717400600302>
+//!
 //! # KhronosNeutral
 //! Khronos Group: Khronos PBR Neutral Tone Mapper, 2024. <https://github.com/KhronosGroup/ToneMapping>
 //!
@@ -73,6 +77,13 @@
 //! # Meister2018b
 //! D. Meister, J. Bittner: Parallel Reinsertion for Bounding Volume Hierarchy Optimization. Computer Graphics Forum 37(2),
 //! 2018. <https://doi.org/10.1111/cgf.13382>
+//!
+//! # Michalsky1988
+//! J. Michalsky: The Astronomical Almanac's Algorithm for Approximate Solar Position (1950-2050). Solar Energy 40(3), 1988.
+//! <https://doi.org/10.1016/0038-092X(88)90045-X>
+//!
+//! # MoonSpencer1942
+//! P. Moon, D. Spencer: Illumination from a Non-Uniform Sky. Transactions of the Illuminating Engineering Society 37, 1942.
 //!
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik

@@ -1,22 +1,30 @@
 //! The sky made ready for rendering: its radiance in every direction, and directions chosen where it is bright.
 
 use super::clear_sky::ClearSky;
+use super::environment::OVERCAST_IRRADIANCE;
+use super::sky_image::SkyImage;
+use super::sky_table::SkyTable;
 use super::{Environment, LightSample, Sky};
 use crate::color::Rgb;
-use crate::math::functions::atan2;
+use crate::math::angle::Angle;
 use crate::math::sum::Sum;
 use crate::math::warp;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
+use std::sync::Arc;
 
-/// Rows of the sampling table, equal steps of the height z of the direction: equal solid angles.
+/// Rows of the sampling table of a sky that is given by a formula, equal steps of the height z: equal solid angles.
 const ROWS: usize = 64;
 
-/// Columns of the sampling table, equal steps of azimuth.
+/// Columns of that table, equal steps of azimuth.
 const COLUMNS: usize = 256;
 
-/// Share of the average cell that every cell has at least, so that no direction with light is impossible to choose.
-const LEAST_SHARE: f64 = 0.01;
+/// Rows of the sampling table of a picture, at most; it has twice as many columns.
+const IMAGE_ROWS: usize = 512;
+
+/// How much of a pixel's light linear interpolation brings to the halves of pixels round its middle, along one axis: where the
+/// middle of the half lies, in pixels, and its share.
+const SPREAD: [(f64, f64); 4] = [(-0.75, 0.125), (-0.25, 0.375), (0.25, 0.375), (0.75, 0.125)];
 
 /// The sky, ready to be looked at and sampled.
 #[derive(Clone, Debug)]
@@ -28,56 +36,198 @@ pub struct Dome {
 enum Content {
     Dark,
     Uniform(Rgb),
-    Clear(Box<Clear>),
+    /// A sky above the horizon, land below it.
+    Landscape(Box<Landscape>),
+    Image(Box<Panorama>),
 }
 
 #[derive(Clone, Debug)]
-struct Clear {
-    sky: ClearSky,
+struct Landscape {
+    above: Above,
     /// Radiance of the ground that is seen below the horizon.
     ground: Rgb,
     /// ∫ L cos θ dω over the sky without the sun.
     irradiance: Rgb,
-    table: Table,
+    table: SkyTable,
 }
 
-/// Piecewise constant density over the upper hemisphere.
+/// Skies that are given by a formula.
 #[derive(Clone, Debug)]
-struct Table {
-    /// Running sums of the rows' shares, from 0 to 1.
-    rows: Vec<f64>,
-    /// Per row, running sums of the shares of its columns, from 0 to 1.
-    columns: Vec<f64>,
+enum Above {
+    /// Its brightness as a multiple of the natural one.
+    Clear(ClearSky, f64),
+    /// Radiance of the zenith.
+    Overcast(Rgb),
+}
+
+#[derive(Clone, Debug)]
+struct Panorama {
+    image: Arc<SkyImage>,
+    turn: Angle,
+    strength: f64,
+    /// ∫ L cos θ dω over the upper half.
+    irradiance: Rgb,
+    /// In the picture's own directions.
+    table: SkyTable,
+}
+
+impl Above {
+    /// Radiance from a direction above the horizon.
+    fn radiance(&self, w: DVec3) -> Rgb {
+        match self {
+            Self::Clear(sky, strength) => sky.radiance(w) * *strength,
+            Self::Overcast(zenith) => *zenith * ((1.0 + 2.0 * w.z) / 3.0),
+        }
+    }
+}
+
+impl Landscape {
+    /// The sky with the ground under it, which the sun lights too.
+    fn new(above: Above, ground_albedo: Rgb, environment: &Environment) -> Self {
+        // Two by two directions per cell.
+        let cell_solid_angle = TAU / (ROWS * COLUMNS) as f64;
+        let mut irradiance = [Sum::ZERO; 3];
+        let mut cells = vec![0.0; ROWS * COLUMNS];
+        for (i, cell) in cells.iter_mut().enumerate() {
+            for (dz, dphi) in [(0.25, 0.25), (0.25, 0.75), (0.75, 0.25), (0.75, 0.75)] {
+                let z = ((i / COLUMNS) as f64 + dz) / ROWS as f64;
+                let w = warp::direction(z, ((i % COLUMNS) as f64 + dphi) / COLUMNS as f64);
+                let radiance = above.radiance(w) * 0.25;
+                *cell += radiance.mean();
+                for (sum, value) in irradiance.iter_mut().zip(radiance.to_array()) {
+                    sum.add(value * w.z * cell_solid_angle);
+                }
+            }
+        }
+        let irradiance = match &above {
+            Above::Overcast(zenith) => *zenith * OVERCAST_IRRADIANCE,
+            Above::Clear(..) => Rgb::from_array(irradiance.map(|sum| sum.value())),
+        };
+        let sun = environment.sun.as_ref();
+        let direct = sun.map_or(Rgb::BLACK, |s| s.irradiance * s.to_sun.z.max(0.0));
+        let edges = (0..=ROWS).map(|row| row as f64 / ROWS as f64).collect();
+        Self {
+            above,
+            ground: ground_albedo * (irradiance + direct) * FRAC_1_PI,
+            irradiance,
+            table: SkyTable::new(edges, cells),
+        }
+    }
+}
+
+impl Panorama {
+    fn new(image: Arc<SkyImage>, turn: Angle, strength: f64) -> Self {
+        let (width, height) = (image.width(), image.height());
+        let rows = (2 * height).min(IMAGE_ROWS);
+        let columns = 2 * rows;
+        let mut cells = vec![0.0; rows * columns];
+        let mut irradiance = [Sum::ZERO; 3];
+        for y in 0..height {
+            // The band of directions that a row of pixels covers.
+            let (upper, lower) = (edge_height(y, height), edge_height(y + 1, height));
+            let solid_angle = (upper - lower) * TAU / width as f64;
+            let facing = (upper.max(0.0).powi(2) - lower.max(0.0).powi(2)) * PI / width as f64;
+            for x in 0..width {
+                let value = image.pixel(x as isize, y as isize) * strength;
+                for (sum, channel) in irradiance.iter_mut().zip(value.to_array()) {
+                    sum.add(channel * facing);
+                }
+                // Linear interpolation spreads a pixel over the halves of pixels round its middle.
+                for (dy, share_y) in SPREAD {
+                    for (dx, share_x) in SPREAD {
+                        let to_x = (x as f64 + 0.5 + dx) / width as f64;
+                        let to_y = (y as f64 + 0.5 + dy).clamp(0.0, height as f64 - 0.5);
+                        // Rows of the table run from the nadir up, columns from +x towards +y.
+                        let row = rows - 1 - (to_y / height as f64 * rows as f64) as usize;
+                        let turn = (0.75 - to_x).rem_euclid(1.0);
+                        let column = ((turn * columns as f64) as usize).min(columns - 1);
+                        cells[row * columns + column] +=
+                            value.mean() * solid_angle * share_x * share_y;
+                    }
+                }
+            }
+        }
+        let edges: Vec<f64> = (0..=rows).map(|row| -edge_height(row, rows)).collect();
+        // The table wants radiances, the means over its cells.
+        for (row, band) in cells.chunks_mut(columns).enumerate() {
+            for cell in band {
+                *cell /= (edges[row + 1] - edges[row]) * TAU / columns as f64;
+            }
+        }
+        Self {
+            image,
+            turn,
+            strength,
+            irradiance: Rgb::from_array(irradiance.map(|sum| sum.value())),
+            table: SkyTable::new(edges, cells),
+        }
+    }
+
+    /// The picture's own direction of a direction of the world.
+    fn into_picture(&self, w: DVec3) -> DVec3 {
+        let (sin, cos) = (self.turn.sin(), self.turn.cos());
+        DVec3::new(cos * w.x + sin * w.y, cos * w.y - sin * w.x, w.z)
+    }
+
+    fn radiance(&self, w: DVec3) -> Rgb {
+        self.image.value(self.into_picture(w)) * self.strength
+    }
+
+    fn sample(&self, u: DVec2) -> DVec3 {
+        let (sin, cos) = (self.turn.sin(), self.turn.cos());
+        let w = self.table.sample(u);
+        DVec3::new(cos * w.x - sin * w.y, cos * w.y + sin * w.x, w.z).normalize()
+    }
+}
+
+/// Height of the upper edge of row `y` of `rows`, equal steps of the angle from the zenith: 1 at the top, -1 at the bottom.
+fn edge_height(y: usize, rows: usize) -> f64 {
+    Angle::rad(PI * y as f64 / rows as f64).cos()
 }
 
 impl Dome {
     /// Prepares the sky of `environment`; its sun lights the ground beyond the horizon.
     #[must_use]
     pub fn new(environment: &Environment) -> Self {
-        let content = match environment.sky {
+        let landscape = |above, ground_albedo| {
+            Content::Landscape(Box::new(Landscape::new(above, ground_albedo, environment)))
+        };
+        let content = match &environment.sky {
             Sky::None => Content::Dark,
             Sky::Uniform(radiance) if radiance.is_black() => Content::Dark,
-            Sky::Uniform(radiance) => Content::Uniform(radiance),
+            Sky::Uniform(radiance) => Content::Uniform(*radiance),
             Sky::ClearSky {
                 sun_azimuth,
                 sun_elevation,
                 turbidity,
                 ground_albedo,
-            } => match ClearSky::new(sun_azimuth, sun_elevation, turbidity, ground_albedo) {
-                None => Content::Dark,
-                Some(sky) => {
-                    let (table, irradiance) = Table::new(&sky);
-                    let sun = environment.sun.as_ref();
-                    let direct = sun.map_or(Rgb::BLACK, |s| s.irradiance * s.to_sun.z.max(0.0));
-                    let ground = ground_albedo * (irradiance + direct) * FRAC_1_PI;
-                    Content::Clear(Box::new(Clear {
-                        sky,
-                        ground,
-                        irradiance,
-                        table,
-                    }))
+                strength,
+            } => {
+                let sky = ClearSky::new(*sun_azimuth, *sun_elevation, *turbidity, *ground_albedo);
+                match sky {
+                    Some(sky) if *strength > 0.0 => {
+                        landscape(Above::Clear(sky, *strength), *ground_albedo)
+                    }
+                    Some(_) | None => Content::Dark,
                 }
-            },
+            }
+            Sky::Overcast { zenith, .. } if zenith.is_black() => Content::Dark,
+            Sky::Overcast {
+                zenith,
+                ground_albedo,
+            } => landscape(Above::Overcast(*zenith), *ground_albedo),
+            Sky::Image {
+                image,
+                turn,
+                strength,
+            } => {
+                let panorama = Panorama::new(Arc::clone(image), *turn, *strength);
+                if panorama.table.is_black() {
+                    Content::Dark
+                } else {
+                    Content::Image(Box::new(panorama))
+                }
+            }
         };
         Self { content }
     }
@@ -94,8 +244,9 @@ impl Dome {
         match &self.content {
             Content::Dark => Rgb::BLACK,
             Content::Uniform(radiance) => *radiance,
-            Content::Clear(clear) if w.z < 0.0 => clear.ground,
-            Content::Clear(clear) => clear.sky.radiance(w),
+            Content::Landscape(land) if w.z < 0.0 => land.ground,
+            Content::Landscape(land) => land.above.radiance(w),
+            Content::Image(panorama) => panorama.radiance(w),
         }
     }
 
@@ -105,20 +256,22 @@ impl Dome {
         match &self.content {
             Content::Dark => Rgb::BLACK,
             Content::Uniform(radiance) => *radiance * PI,
-            Content::Clear(clear) => clear.irradiance,
+            Content::Landscape(land) => land.irradiance,
+            Content::Image(panorama) => panorama.irradiance,
         }
     }
 
     /// Chooses a direction, more often where the sky is bright, from a point of the unit square; `None` if it is dark.
     ///
-    /// A clear sky is chosen above the horizon only: the ground beyond it is left to scattered rays, because most scenes
-    /// hide it.
+    /// A sky with ground under it is chosen above the horizon only: the ground is left to scattered rays, because most
+    /// scenes hide it.
     #[must_use]
     pub fn sample(&self, u: DVec2) -> Option<LightSample> {
         let wi = match &self.content {
             Content::Dark => return None,
             Content::Uniform(_) => warp::sphere(u),
-            Content::Clear(clear) => clear.table.sample(u),
+            Content::Landscape(land) => land.table.sample(u),
+            Content::Image(panorama) => panorama.sample(u),
         };
         let pdf = self.pdf_solid_angle(wi);
         (pdf > 0.0).then(|| LightSample {
@@ -135,101 +288,11 @@ impl Dome {
         match &self.content {
             Content::Dark => 0.0,
             Content::Uniform(_) => warp::sphere_pdf_solid_angle(),
-            Content::Clear(_) if w.z < 0.0 => 0.0,
-            Content::Clear(clear) => clear.table.pdf_solid_angle(w),
+            Content::Landscape(_) if w.z < 0.0 => 0.0,
+            Content::Landscape(land) => land.table.pdf_solid_angle(w),
+            Content::Image(panorama) => panorama.table.pdf_solid_angle(panorama.into_picture(w)),
         }
     }
-}
-
-impl Table {
-    /// The table of a sky, and the sky's horizontal irradiance from the same directions.
-    fn new(sky: &ClearSky) -> (Self, Rgb) {
-        // Two by two directions per cell.
-        let cell_solid_angle = TAU / (ROWS * COLUMNS) as f64;
-        let mut irradiance = [Sum::ZERO; 3];
-        let mut cells = vec![0.0; ROWS * COLUMNS];
-        for (i, cell) in cells.iter_mut().enumerate() {
-            for (dz, dphi) in [(0.25, 0.25), (0.25, 0.75), (0.75, 0.25), (0.75, 0.75)] {
-                let z = ((i / COLUMNS) as f64 + dz) / ROWS as f64;
-                let w = warp::direction(z, ((i % COLUMNS) as f64 + dphi) / COLUMNS as f64);
-                let radiance = sky.radiance(w) * 0.25;
-                *cell += radiance.mean();
-                for (sum, value) in irradiance.iter_mut().zip(radiance.to_array()) {
-                    sum.add(value * w.z * cell_solid_angle);
-                }
-            }
-        }
-
-        // A least share everywhere keeps the weights of samples bounded.
-        let least = LEAST_SHARE * cells.iter().sum::<f64>() / cells.len() as f64;
-        for cell in &mut cells {
-            *cell = cell.max(least);
-        }
-        let row_sums: Vec<f64> = cells.chunks(COLUMNS).map(|row| row.iter().sum()).collect();
-        let columns = cells.chunks(COLUMNS).flat_map(running_shares).collect();
-        let irradiance = Rgb::from_array(irradiance.map(|sum| sum.value()));
-        (
-            Self {
-                rows: running_shares(&row_sums),
-                columns,
-            },
-            irradiance,
-        )
-    }
-
-    fn row_of_columns(&self, row: usize) -> &[f64] {
-        &self.columns[row * (COLUMNS + 1)..(row + 1) * (COLUMNS + 1)]
-    }
-
-    fn sample(&self, u: DVec2) -> DVec3 {
-        let (row, along_row) = invert(&self.rows, u.x);
-        let (column, along_column) = invert(self.row_of_columns(row), u.y);
-        let z = (row as f64 + along_row) / ROWS as f64;
-        warp::direction(z, (column as f64 + along_column) / COLUMNS as f64)
-    }
-
-    fn pdf_solid_angle(&self, w: DVec3) -> f64 {
-        let turn = atan2(w.y, w.x) / TAU;
-        let turn = if turn < 0.0 { turn + 1.0 } else { turn };
-        let row = ((w.z * ROWS as f64) as usize).min(ROWS - 1);
-        let column = ((turn * COLUMNS as f64) as usize).min(COLUMNS - 1);
-        let columns = self.row_of_columns(row);
-        let share = (self.rows[row + 1] - self.rows[row]) * (columns[column + 1] - columns[column]);
-        share * (ROWS * COLUMNS) as f64 / TAU
-    }
-}
-
-/// Running sums of weights, scaled to end at exactly 1; even shares if all weights are 0.
-fn running_shares(weights: &[f64]) -> Vec<f64> {
-    let total: f64 = weights.iter().sum();
-    let n = weights.len() as f64;
-    let share = |w: f64| if total > 0.0 { w / total } else { 1.0 / n };
-    let mut sums = Vec::with_capacity(weights.len() + 1);
-    let mut sum = 0.0;
-    sums.push(0.0);
-    for weight in weights {
-        sum += share(*weight);
-        sums.push(sum.min(1.0));
-    }
-    if let Some(last) = sums.last_mut() {
-        *last = 1.0;
-    }
-    sums
-}
-
-/// The cell of running sums that `u` in [0, 1) falls into, and how far along the cell it lies, 0..1.
-fn invert(sums: &[f64], u: f64) -> (usize, f64) {
-    let cell = sums
-        .partition_point(|sum| *sum <= u)
-        .clamp(1, sums.len() - 1)
-        - 1;
-    let width = sums[cell + 1] - sums[cell];
-    let along = if width > 0.0 {
-        ((u - sums[cell]) / width).clamp(0.0, 1.0)
-    } else {
-        0.5
-    };
-    (cell, along)
 }
 
 #[cfg(test)]
@@ -331,12 +394,120 @@ mod tests {
     }
 
     #[test]
-    fn inverting_running_shares_meets_every_cell() {
-        let sums = running_shares(&[1.0, 0.0, 3.0]);
-        assert_eq!(sums, [0.0, 0.25, 0.25, 1.0]);
-        assert_eq!(invert(&sums, 0.0), (0, 0.0));
-        assert_eq!(invert(&sums, 0.25).0, 2);
-        assert_eq!(invert(&sums, 1.0).0, 2);
-        assert_eq!(running_shares(&[0.0, 0.0]), [0.0, 0.5, 1.0]);
+    fn the_overcast_sky_is_the_standard_one() {
+        let dome = Dome::new(&Environment::overcast(Angle::deg(30.0), Rgb::splat(0.2)));
+        let zenith = dome.radiance(DVec3::Z);
+        assert!(
+            (dome.radiance(DVec3::X) * 3.0 - zenith)
+                .map(f64::abs)
+                .max_channel()
+                < 1e-12
+        );
+        // 300 + 21,000 / 2 lux, 683 lm/W; refdata/sky_models_ratios.csv: E / L of the zenith.
+        let irradiance = dome.horizontal_irradiance();
+        assert!((irradiance.g - 10_800.0 / 683.0).abs() < 1e-9);
+        assert!((irradiance.g / zenith.g - 2.443_460_953).abs() < 1e-9);
+        assert_eq!(dome.radiance(DVec3::NEG_Z), irradiance * 0.2 * FRAC_1_PI);
+        assert!(Dome::new(&Environment::overcast(Angle::deg(-1.0), Rgb::WHITE)).is_dark());
+    }
+
+    /// A dim panorama of 64 × 32 pixels with one bright pixel and one bright row.
+    fn panorama(turn: f64, strength: f64) -> Environment {
+        let mut pixels = vec![[0.1, 0.2, 0.3]; 64 * 32];
+        pixels[5 * 64 + 40] = [900.0, 800.0, 700.0];
+        for pixel in &mut pixels[20 * 64..21 * 64] {
+            *pixel = [3.0, 2.0, 1.0];
+        }
+        let image = Arc::new(SkyImage::new(64, 32, pixels).unwrap());
+        let turn = Angle::deg(turn);
+        Environment {
+            sky: Sky::Image {
+                image,
+                turn,
+                strength,
+            },
+            sun: None,
+        }
+    }
+
+    #[test]
+    fn a_picture_is_sampled_as_it_is_seen_with_bounded_weight() {
+        for (turn, strength) in [(0.0, 1.0), (77.0, 2.5)] {
+            let dome = Dome::new(&panorama(turn, strength));
+            let (n, mut by_samples, mut total, mut worst) = (400, Rgb::BLACK, 0.0, 0.0_f64);
+            for i in 0..n * n {
+                let u = DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
+                let sample = dome.sample(u).unwrap();
+                let share = 1.0 / f64::from(n * n);
+                by_samples += sample.facing_irradiance * (sample.wi.z.max(0.0) * share);
+                total += sample.facing_irradiance.mean() * share;
+                worst = worst.max(sample.facing_irradiance.mean());
+            }
+            assert!(worst < 6.0 * total, "{worst} {total}");
+            // The same integral with directions that know nothing of the picture.
+            let (n, mut by_cosine) = (2000, Rgb::BLACK);
+            for i in 0..n * n {
+                let u = DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
+                by_cosine += dome.radiance(warp::cosine_hemisphere(u));
+            }
+            by_cosine = by_cosine * (PI / f64::from(n * n));
+            for channel in 0..3 {
+                let ratio = by_samples[channel] / by_cosine[channel];
+                assert!((ratio - 1.0).abs() < 5e-3, "{turn} {channel}: {ratio}");
+                // The stated one is that of the pixels, not of what is interpolated between them.
+                let ratio = dome.horizontal_irradiance()[channel] / by_cosine[channel];
+                assert!((ratio - 1.0).abs() < 0.02, "{turn} {channel}: {ratio}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_turns_counter_clockwise() {
+        // The bright pixel is at azimuth 227.8° of the picture's own compass, elevation 59.1°.
+        let compass: f64 = (40.5 / 64.0 - 0.5) * 360.0;
+        let height = Angle::deg(90.0 - 5.5 / 32.0 * 180.0);
+        for turn in [0.0, 30.0, 200.0] {
+            let dome = Dome::new(&panorama(turn, 1.0));
+            let from_x = Angle::deg(90.0 - compass + turn);
+            let w = DVec3::new(
+                height.cos() * from_x.cos(),
+                height.cos() * from_x.sin(),
+                height.sin(),
+            );
+            assert!((dome.radiance(w).r - 900.0).abs() < 1e-6, "{turn}");
+        }
+    }
+
+    #[test]
+    fn a_black_picture_is_dark() {
+        let image = Arc::new(SkyImage::new(2, 1, vec![[0.0; 3]; 2]).unwrap());
+        let sky = Sky::Image {
+            image,
+            turn: Angle::deg(0.0),
+            strength: 1.0,
+        };
+        assert!(Dome::new(&Environment { sky, sun: None }).is_dark());
+        assert!(Dome::new(&panorama(0.0, 0.0)).is_dark());
+    }
+
+    #[test]
+    fn brightening_multiplies_all_of_it() {
+        let up = DVec3::new(0.6, 0.0, 0.8);
+        let overcast = Environment::overcast(Angle::deg(40.0), Rgb::splat(0.2));
+        for environment in [day(40.0, 3.0), overcast, panorama(10.0, 1.0)] {
+            let (dim, bright) = (
+                Dome::new(&environment),
+                Dome::new(&environment.clone().brightened(3.0)),
+            );
+            for w in [up, -up] {
+                let ratio = bright.radiance(w).g / dim.radiance(w).g;
+                assert!((ratio - 3.0).abs() < 1e-12, "{ratio}");
+            }
+            let sun = environment.clone().brightened(3.0).sun;
+            assert_eq!(
+                sun.map(|sun| sun.irradiance),
+                environment.sun.map(|sun| sun.irradiance * 3.0)
+            );
+        }
     }
 }

@@ -1,9 +1,12 @@
 //! Light from infinitely far away: the sky and the disk of the sun, as plain data.
 
 use super::lamp::{LightError, check_brightness, check_finite, check_unit};
+use super::sky_image::SkyImage;
 use crate::color::Rgb;
 use crate::math::angle::Angle;
 use glam::DVec3;
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Everything that shines from infinitely far away; dark by default.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,6 +38,27 @@ pub enum Sky {
         turbidity: f64,
         /// Reflectance of the ground round about, 0..=1 per channel.
         ground_albedo: Rgb,
+        /// Brightness as a multiple of the natural one.
+        strength: f64,
+    },
+    /// The standard overcast sky: three times as bright at the zenith as at the horizon, the same all round.
+    ///
+    /// L(h) = `zenith` · (1 + 2 sin h) / 3 at the elevation h ([MoonSpencer1942](crate::references#moonspencer1942), CIE
+    /// standard). Below the horizon it shows ground as [`Sky::ClearSky`] does.
+    Overcast {
+        /// Radiance of the zenith, W/(m² sr) per channel.
+        zenith: Rgb,
+        /// Reflectance of the ground round about, 0..=1 per channel.
+        ground_albedo: Rgb,
+    },
+    /// A picture of all that is round about.
+    Image {
+        /// The picture.
+        image: Arc<SkyImage>,
+        /// How far it is turned about the vertical, counter-clockwise as seen from above.
+        turn: Angle,
+        /// What its values are multiplied by to give W/(m² sr).
+        strength: f64,
     },
 }
 
@@ -64,11 +88,24 @@ impl Environment {
                 sun_elevation,
                 turbidity,
                 ground_albedo,
+                strength,
             } => {
                 let toward = direction(*sun_azimuth, *sun_elevation);
                 check_finite(toward, "direction of the sun")?;
                 check_brightness(Rgb::splat(*turbidity))?;
                 check_brightness(*ground_albedo)?;
+                check_brightness(Rgb::splat(*strength))?;
+            }
+            Sky::Overcast {
+                zenith,
+                ground_albedo,
+            } => {
+                check_brightness(*zenith)?;
+                check_brightness(*ground_albedo)?;
+            }
+            Sky::Image { turn, strength, .. } => {
+                check_finite(DVec3::splat(turn.radians()), "turn of the sky")?;
+                check_brightness(Rgb::splat(*strength))?;
             }
         }
         self.sun.as_ref().map_or(Ok(()), |sun| {
@@ -92,11 +129,55 @@ impl Environment {
                 sun_elevation: elevation,
                 turbidity,
                 ground_albedo,
+                strength: 1.0,
             },
             sun: SunDisk::clear(azimuth, elevation, turbidity),
         }
     }
+
+    /// The light of a day when clouds cover all of the sky and hide the sun, which stands at this elevation.
+    ///
+    /// Grey, with the mean illuminance measured under overcast skies, 300 + 21,000 sin(elevation) lux on the ground
+    /// ([KrochmannSeidl1974](crate::references#krochmannseidl1974)). Dark if the sun is not above the horizon.
+    #[must_use]
+    pub fn overcast(elevation: Angle, ground_albedo: Rgb) -> Self {
+        let height = elevation.sin();
+        let lux = if height > 0.0 {
+            300.0 + 21_000.0 * height
+        } else {
+            0.0
+        };
+        let zenith = Rgb::splat(lux / LUMENS_PER_WATT / OVERCAST_IRRADIANCE);
+        Self {
+            sky: Sky::Overcast {
+                zenith,
+                ground_albedo,
+            },
+            sun: None,
+        }
+    }
+
+    /// The same surroundings, `factor` times as bright.
+    #[must_use]
+    pub fn brightened(mut self, factor: f64) -> Self {
+        match &mut self.sky {
+            Sky::None => {}
+            Sky::Uniform(radiance) => *radiance = *radiance * factor,
+            Sky::Overcast { zenith, .. } => *zenith = *zenith * factor,
+            Sky::ClearSky { strength, .. } | Sky::Image { strength, .. } => *strength *= factor,
+        }
+        if let Some(sun) = &mut self.sun {
+            sun.irradiance = sun.irradiance * factor;
+        }
+        self
+    }
 }
+
+/// Luminous efficacy of radiation that is weighted with the eye's sensitivity, lm/W (SI, definition of the candela).
+const LUMENS_PER_WATT: f64 = 683.0;
+
+/// Horizontal irradiance under the overcast sky per radiance of its zenith: ∫ (1 + 2 sin h)/3 · sin h dω = 7π/9.
+pub(super) const OVERCAST_IRRADIANCE: f64 = 7.0 * PI / 9.0;
 
 /// The unit vector at this azimuth (from +x towards +y) and elevation above the horizon (z up).
 #[must_use]

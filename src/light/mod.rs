@@ -8,11 +8,15 @@ mod clear_sky;
 pub mod dome;
 pub mod environment;
 mod lamp;
+pub mod sky_image;
+mod sky_table;
 pub mod sun;
+pub mod sun_position;
 
 pub use dome::Dome;
 pub use environment::{Environment, Sky, SunDisk};
 pub use lamp::LightError;
+pub use sky_image::SkyImage;
 
 use crate::color::Rgb;
 use crate::math::angle::Angle;

@@ -19,6 +19,7 @@ pub mod explain;
 pub mod preset;
 pub mod setting;
 pub mod sidecar;
+pub mod surroundings;
 pub mod table;
 pub mod value;
 

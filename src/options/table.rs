@@ -1,8 +1,12 @@
 //! The table of options: one row each.
 
 use super::setting::{Origin, SetError, Setting};
-use super::value::{Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Threads, Turbidity};
+use super::surroundings::SkyKind;
+use super::value::{
+    Brightness, Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Threads, Turbidity,
+};
 use crate::diag::nearest;
+use crate::light::sun_position::{Moment, Place};
 use crate::math::angle::Angle;
 use glam::DVec3;
 use std::num::{NonZeroU32, NonZeroU64};
@@ -223,6 +227,16 @@ options! {
 
     /// Daylight with the sun at this azimuth (from north over east) and elevation, in degrees; `auto`: only for a model without light; `none`
     sun: Daylight = "auto", "sun", "AZ,EL", Sky, Scene, PICTURING;
+    /// Puts the sun where it stands at this time (universal time unless an offset says otherwise); needs `place`
+    date: Option<Moment> = "none", "date", "YYYY-MM-DDThh:mm", Sky, Scene, PICTURING;
+    /// Where on Earth the model stands, in degrees, north and east positive; for `date`
+    place: Option<Place> = "none", "place", "LAT,LON", Sky, Scene, PICTURING;
+    /// What the sky is: `clear`, `overcast`, `uniform`, or a panorama `FILE.exr` or `FILE.hdr`; `auto`: clear, where there is daylight
+    sky: SkyKind = "auto", "sky", "KIND", Sky, Scene, PICTURING;
+    /// Scales sky and sun to give so many watts per square metre on level ground, summed over red, green and blue; `auto`: as in nature, or as the panorama has it
+    sky_power: Option<Brightness> = "auto", "sky-power", "W/M2", Sky, Scene, PICTURING;
+    /// Turns a panorama about the vertical by so many degrees, counter-clockwise as seen from above
+    sky_turn: f64 = "0", "sky-turn", "DEG", Sky, Scene, PICTURING;
     /// Haze of the air, from 1 (clear) to 10
     turbidity: Turbidity = "3", "turbidity", "T", Sky, Scene, PICTURING;
     /// Reflectance of a plane to stand on; `auto`: a plane for a model without light and ground; `none`

@@ -262,6 +262,19 @@ impl OptionValue for Turbidity {
     }
 }
 
+/// How bright the sky is, watts per square metre; greater than 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brightness(pub f64);
+
+impl OptionValue for Brightness {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.parse::<f64>() {
+            Ok(power) if power > 0.0 && power.is_finite() => Ok(Self(power)),
+            _ => Err("a number of watts per square metre above 0".into()),
+        }
+    }
+}
+
 impl OptionValue for f64 {
     fn parse(text: &str) -> Result<Self, String> {
         match text.parse::<Self>() {
@@ -318,7 +331,7 @@ whole_numbers! {
 }
 
 /// `N` finite numbers between commas.
-fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+pub(super) fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     let mut words = text.split(',');
     for number in &mut numbers {

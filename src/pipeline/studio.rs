@@ -10,15 +10,17 @@ use super::inputs::Inputs;
 use super::project_files::{self, Access, ProjectFiles};
 use super::report::{Phase, PhaseSeconds};
 use super::sources::Sources;
-use super::surroundings;
-use super::world::World;
+use super::surroundings::Outdoors;
+use super::world::{World, folder_of};
 use crate::check::model::Model;
 use crate::diag::Diagnostics;
 use crate::growth::Growth;
 use crate::integrator::CancelToken;
-use crate::options::{Options, Stage};
+use crate::light::SkyImage;
+use crate::options::surroundings::SkyKind;
+use crate::options::{Options, Origin, Stage};
 use crate::scene::Scene;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A model that has been read, with the options that apply to it.
@@ -93,9 +95,9 @@ impl Run {
     /// What a picture tells of its making: program, model, seed, and the options that were set.
     pub fn texts(&self) -> Vec<(&'static str, String)> {
         let entries = self.options.entries();
-        let set = entries.iter().filter(|entry| {
-            entry.row.stage != Stage::Machine && entry.origin != crate::options::Origin::Default
-        });
+        let set = entries
+            .iter()
+            .filter(|entry| entry.row.stage != Stage::Machine && entry.origin != Origin::Default);
         let options: Vec<String> = set
             .map(|entry| format!("{}={}", entry.row.key, entry.text))
             .collect();
@@ -223,7 +225,9 @@ impl<'w> Studio<'w> {
     /// # Errors
     /// As [`grow`](Self::grow), or if its geometry cannot be a scene.
     pub fn build(&mut self, run: &Run, cancel: &CancelToken) -> Result<Arc<Scene>, Failure> {
-        let key = run.scene_key();
+        let panorama = self.panorama(run)?;
+        let content = panorama.as_ref().map(|(_, file)| &file[..]);
+        let key = run.scene_key().with(&ContentHash::of(content).to_string());
         if let Some((known, scene)) = &self.scene
             && *known == key
         {
@@ -232,7 +236,11 @@ impl<'w> Studio<'w> {
         self.scene = None;
         let mut drawn = self.draw(run, cancel)?;
         self.audience.begins("building the scene");
-        surroundings::complete(&mut drawn.scene, &drawn.summary, &run.options);
+        let panorama = panorama
+            .map(|(path, file)| decode(&path, &file))
+            .transpose()?;
+        let outdoors = Outdoors::new(&run.options, drawn.summary.has_light, panorama)?;
+        outdoors.complete(&mut drawn.scene, &drawn.summary, &run.options);
         let built = self
             .seconds
             .time(self.world, Phase::Accel, || Scene::build(drawn.scene));
@@ -244,6 +252,27 @@ impl<'w> Studio<'w> {
         let scene = Arc::new(scene);
         self.scene = Some((key, scene.clone()));
         Ok(scene)
+    }
+
+    /// The panorama that the options name, as a file. Its path starts at the folder of who wrote it: the file beside the
+    /// model, or the user.
+    fn panorama(&self, run: &Run) -> Result<Option<(PathBuf, Vec<u8>)>, Failure> {
+        let SkyKind::Image(path) = &run.options.sky.value else {
+            return Ok(None);
+        };
+        let sidecar = match run.options.sky.origin {
+            Origin::Sidecar(span) => run.sources.map.file(span.file),
+            Origin::Default | Origin::Preset(_) | Origin::Flag => None,
+        };
+        let path = match sidecar {
+            Some(file) => folder_of(Path::new(&*file.name)).join(path),
+            None => path.clone(),
+        };
+        let file = self
+            .world
+            .read(&path)
+            .map_err(|error| Failure::file("read", &path, &error))?;
+        Ok(Some((path, file)))
     }
 
     /// Grows the model and turns it into geometry. The graph is given back at once: it is large, and what light needs of
@@ -272,4 +301,12 @@ impl<'w> Studio<'w> {
         }
         Ok(drawn)
     }
+}
+
+/// The panorama in a file.
+fn decode(path: &Path, file: &[u8]) -> Result<Arc<SkyImage>, Failure> {
+    let image = SkyImage::decode(file).map_err(|error| {
+        Failure::World(format!("cannot use `{}` as a sky: {error}", path.display()))
+    })?;
+    Ok(Arc::new(image))
 }

@@ -1,18 +1,22 @@
 //! What a model is given that it does not bring along: daylight, and a ground to stand on.
 
+use super::failure::Failure;
 use crate::color::Rgb;
 use crate::geometry::Shape;
 use crate::interpret::Summary;
-use crate::light::Environment;
+use crate::light::{Dome, Environment, Sky, SkyImage};
 use crate::material::Material;
 use crate::math::Bounds3;
 use crate::math::angle::Angle;
 use crate::options::Options;
-use crate::options::value::{Daylight, Ground};
+use crate::options::surroundings::SkyKind;
+use crate::options::value::{Brightness, Daylight, Ground};
 use crate::scene::description::{
     Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
 use glam::{DAffine3, DVec3};
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The organ of what belongs to no organ of the model.
 pub const NO_ORGAN: OrganId = OrganId(u32::MAX);
@@ -24,32 +28,134 @@ const SOIL: Rgb = Rgb::new(0.23, 0.21, 0.15);
 /// where [`frame`](crate::camera::framing::frame) stands, so that light and shadow both show.
 const SUN: (Angle, Angle) = (Angle::deg(225.0), Angle::deg(40.0));
 
-/// Adds the daylight and the ground that the options ask for.
-pub fn complete(description: &mut SceneDescription, model: &Summary, options: &Options) {
-    let has_light = model.has_light;
-    let sun = match options.sun.value {
-        Daylight::Auto if has_light => None,
-        Daylight::Auto => Some(SUN),
-        Daylight::None => None,
-        Daylight::Sun { azimuth, elevation } => Some((azimuth, elevation)),
-    };
-    let wants_ground = match options.ground.value {
-        Ground::Auto => !has_light && sun.is_some() && !model.has_plane,
-        Ground::None => false,
-        Ground::Color(_) => true,
-    };
-    let reflectance = match options.ground.value {
+/// The light round a model: what the options say, made ready.
+#[derive(Clone, Debug)]
+pub struct Outdoors {
+    /// The sky and its sun; `None` if the model has its own light and nothing else was asked for.
+    environment: Option<Environment>,
+    /// Whether it is there because the model has no light.
+    is_given: bool,
+}
+
+impl Outdoors {
+    /// The light that the options ask for, for a model that has light of its own or not; `panorama` is the picture that
+    /// they name.
+    ///
+    /// # Errors
+    /// If they contradict each other.
+    pub fn new(
+        options: &Options,
+        has_light: bool,
+        panorama: Option<Arc<SkyImage>>,
+    ) -> Result<Self, Failure> {
+        let sun = sun(options)?;
+        let ground = reflectance(options);
+        let elevation = sun.map_or(SUN.1, |(_, elevation)| elevation);
+        let no_sun = options.sun.value == Daylight::None;
+        let clear = |(azimuth, elevation): (Angle, Angle)| {
+            // The compass runs from north (+y) over east (+x), mathematics from +x to +y.
+            let from_x = Angle::deg(90.0 - azimuth.degrees());
+            Environment::daylight(from_x, elevation, options.turbidity.value.0, ground)
+        };
+        let environment = match (&options.sky.value, panorama) {
+            (SkyKind::Image(_), Some(image)) => Some(Environment {
+                sky: Sky::Image {
+                    image,
+                    turn: Angle::deg(options.sky_turn.value),
+                    strength: 1.0,
+                },
+                sun: sun.and_then(|sun| clear(sun).sun),
+            }),
+            (SkyKind::Overcast, _) => Some(Environment::overcast(elevation, ground)),
+            (SkyKind::Uniform, _) => {
+                let overcast = Dome::new(&Environment::overcast(elevation, ground));
+                Some(Environment {
+                    sky: Sky::Uniform(overcast.horizontal_irradiance() / PI),
+                    sun: None,
+                })
+            }
+            (SkyKind::Clear, _) if no_sun => {
+                return Err(contradiction("`sky` clear has a sun, and `sun` says none"));
+            }
+            (SkyKind::Clear, _) => Some(clear(sun.unwrap_or(SUN))),
+            (SkyKind::Auto | SkyKind::Image(_), _) if no_sun => None,
+            (SkyKind::Auto | SkyKind::Image(_), _) => {
+                sun.or((!has_light).then_some(SUN)).map(clear)
+            }
+        };
+        Ok(Self {
+            environment: environment.map(|environment| as_bright_as_asked(environment, options)),
+            is_given: !has_light,
+        })
+    }
+
+    /// Adds the light, and the ground that the options ask for.
+    pub fn complete(self, description: &mut SceneDescription, model: &Summary, options: &Options) {
+        let wants_ground = match options.ground.value {
+            Ground::Auto => self.is_given && self.environment.is_some() && !model.has_plane,
+            Ground::None => false,
+            Ground::Color(_) => true,
+        };
+        if let Some(environment) = self.environment {
+            description.environment = environment;
+        }
+        if wants_ground {
+            add_ground(description, reflectance(options), &model.bounds);
+        }
+    }
+}
+
+/// The sun's azimuth from north over east and its elevation, if the options put it somewhere.
+fn sun(options: &Options) -> Result<Option<(Angle, Angle)>, Failure> {
+    match (options.sun.value, options.date.value, options.place.value) {
+        (Daylight::Sun { azimuth, elevation }, None, _) => Ok(Some((azimuth, elevation))),
+        (Daylight::Auto | Daylight::None, None, _) => Ok(None),
+        (Daylight::Auto, Some(moment), Some(place)) => {
+            let (azimuth, elevation) = place.sun(moment);
+            if elevation.degrees() > 0.0 {
+                Ok(Some((azimuth, elevation)))
+            } else {
+                Err(contradiction(&format!(
+                    "at `date` {} the sun is {:.1}° below the horizon of `place` {}: there is no daylight",
+                    options.date.text,
+                    -elevation.degrees(),
+                    options.place.text
+                )))
+            }
+        }
+        (Daylight::Auto, Some(_), None) => Err(contradiction(
+            "`date` needs `place`, the latitude and longitude, to tell where the sun stands",
+        )),
+        (Daylight::Sun { .. } | Daylight::None, Some(_), _) => Err(contradiction(
+            "`sun` and `date` both say where the sun is; give one of them",
+        )),
+    }
+}
+
+fn contradiction(message: &str) -> Failure {
+    Failure::Usage(message.to_owned())
+}
+
+/// Reflectance of the ground and of the land round about.
+fn reflectance(options: &Options) -> Rgb {
+    match options.ground.value {
         Ground::Color(reflectance) => reflectance,
         Ground::Auto | Ground::None => SOIL,
-    };
-    if let Some((azimuth, elevation)) = sun {
-        // The compass runs from north (+y) over east (+x), mathematics from +x to +y.
-        let from_x = Angle::deg(90.0 - azimuth.degrees());
-        let turbidity = options.turbidity.value.0;
-        description.environment = Environment::daylight(from_x, elevation, turbidity, reflectance);
     }
-    if wants_ground {
-        add_ground(description, reflectance, &model.bounds);
+}
+
+/// Scales sky and sun together to the power that was asked for; what is dark stays dark.
+fn as_bright_as_asked(environment: Environment, options: &Options) -> Environment {
+    let Some(Brightness(wanted)) = options.sky_power.value else {
+        return environment;
+    };
+    let sun = environment.sun.as_ref();
+    let direct = sun.map_or(Rgb::BLACK, |sun| sun.irradiance * sun.to_sun.z.max(0.0));
+    let found = (Dome::new(&environment).horizontal_irradiance() + direct).sum();
+    if found > 0.0 {
+        environment.brightened(wanted / found)
+    } else {
+        environment
     }
 }
 
@@ -131,7 +237,7 @@ fn floor_size(placed: &PlacedShape) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::light::{Light, Sky};
+    use crate::light::Light;
     use crate::options::Origin;
 
     fn model(shapes: Vec<Shape>) -> SceneDescription {
@@ -171,7 +277,8 @@ mod tests {
             has_plane: plane_height(&description).is_some(),
             bounds,
         };
-        complete(&mut description, &model, &options);
+        let outdoors = Outdoors::new(&options, model.has_light, None).unwrap();
+        outdoors.complete(&mut description, &model, &options);
         description
     }
 
@@ -269,5 +376,76 @@ mod tests {
         assert_eq!(height(-1.0, 1.0), Some(-1.0));
         assert_eq!(height(-0.2, 9.8), Some(0.0));
         assert_eq!(height(4.0, 5.0), Some(0.0));
+    }
+
+    fn outdoors(flags: &[(&str, &str)]) -> Result<Environment, Failure> {
+        let mut options = Options::default();
+        for (key, text) in flags {
+            options.set(key, text, Origin::Flag).unwrap();
+        }
+        let image = SkyImage::new(2, 1, vec![[1.0; 3]; 2]).unwrap();
+        let found = Outdoors::new(&options, true, Some(Arc::new(image)))?;
+        Ok(found.environment.unwrap_or_default())
+    }
+
+    #[test]
+    fn a_time_and_a_place_tell_where_the_sun_stands() {
+        let flags = [
+            ("date", "2003-10-17T12:30-07:00"),
+            ("place", "39.742476,-105.1786"),
+        ];
+        let sun = outdoors(&flags).unwrap().sun.unwrap().to_sun;
+        // Azimuth 194.3° from north over east, elevation 39.9°.
+        assert!(
+            (sun.x + 0.190).abs() < 0.005 && (sun.y + 0.743).abs() < 0.005,
+            "{sun}"
+        );
+        for wrong in [
+            vec![flags[0]],
+            vec![flags[0], flags[1], ("sun", "1,2")],
+            vec![("date", "2003-10-17T00:30-07:00"), flags[1]],
+            vec![("sky", "clear"), ("sun", "none")],
+        ] {
+            assert!(
+                matches!(outdoors(&wrong), Err(Failure::Usage(_))),
+                "{wrong:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_sky_that_is_asked_for_is_there_whatever_the_model_brings() {
+        assert_eq!(outdoors(&[]).unwrap(), Environment::default());
+        let sky = |flags: &[(&str, &str)]| outdoors(flags).unwrap();
+        assert!(matches!(
+            sky(&[("sky", "overcast")]).sky,
+            Sky::Overcast { .. }
+        ));
+        assert!(matches!(sky(&[("sky", "clear")]).sky, Sky::ClearSky { .. }));
+        assert!(sky(&[("sky", "overcast")]).sun.is_none());
+        assert!(matches!(sky(&[("sky", "a.exr")]).sky, Sky::Image { .. }));
+        assert!(sky(&[("sky", "a.exr"), ("sun", "90,30")]).sun.is_some());
+        // Overcast and uniform skies of the same hour give the ground the same light.
+        let light = |flags: &[(&str, &str)]| Dome::new(&sky(flags)).horizontal_irradiance();
+        let high = [("sky", "uniform"), ("sun", "90,80")];
+        let (uniform, overcast) = (
+            light(&high),
+            light(&[("sky", "overcast"), ("sun", "90,80")]),
+        );
+        assert!((uniform.g / overcast.g - 1.0).abs() < 1e-12);
+        assert!(light(&[("sky", "uniform")]).g < uniform.g);
+    }
+
+    #[test]
+    fn a_power_is_that_on_level_ground() {
+        for kind in ["clear", "overcast", "uniform", "a.hdr"] {
+            let found = outdoors(&[("sky", kind), ("sky-power", "500")]).unwrap();
+            let direct = found
+                .sun
+                .as_ref()
+                .map_or(Rgb::BLACK, |sun| sun.irradiance * sun.to_sun.z);
+            let sum = (Dome::new(&found).horizontal_irradiance() + direct).sum();
+            assert!((sum / 500.0 - 1.0).abs() < 1e-9, "{kind}: {sum}");
+        }
     }
 }
