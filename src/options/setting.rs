@@ -17,6 +17,12 @@ pub enum Origin {
 }
 
 impl Origin {
+    /// Whether a value from here wins over one from `other`.
+    #[must_use]
+    pub fn beats(self, other: Self) -> bool {
+        self.rank() > other.rank()
+    }
+
     fn rank(self) -> u8 {
         match self {
             Self::Default => 0,

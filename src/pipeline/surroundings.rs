@@ -64,7 +64,10 @@ impl Outdoors {
                     turn: Angle::deg(options.sky_turn.value),
                     strength: 1.0,
                 },
-                sun: sun.and_then(|sun| clear(sun).sun),
+                // Whoever names a panorama after the sun was put up means the panorama, which has its own.
+                sun: sun
+                    .filter(|_| !options.sky.origin.beats(options.sun.origin))
+                    .and_then(|sun| clear(sun).sun),
             }),
             (SkyKind::Overcast, _) => Some(Environment::overcast(elevation, ground)),
             (SkyKind::Uniform, _) => {
@@ -107,29 +110,33 @@ impl Outdoors {
 
 /// The sun's azimuth from north over east and its elevation, if the options put it somewhere.
 fn sun(options: &Options) -> Result<Option<(Angle, Angle)>, Failure> {
-    match (options.sun.value, options.date.value, options.place.value) {
-        (Daylight::Sun { azimuth, elevation }, None, _) => Ok(Some((azimuth, elevation))),
-        (Daylight::Auto | Daylight::None, None, _) => Ok(None),
-        (Daylight::Auto, Some(moment), Some(place)) => {
-            let (azimuth, elevation) = place.sun(moment);
-            if elevation.degrees() > 0.0 {
-                Ok(Some((azimuth, elevation)))
-            } else {
-                Err(contradiction(&format!(
-                    "at `date` {} the sun is {:.1}° below the horizon of `place` {}: there is no daylight",
-                    options.date.text,
-                    -elevation.degrees(),
-                    options.place.text
-                )))
-            }
-        }
-        (Daylight::Auto, Some(_), None) => Err(contradiction(
-            "`date` needs `place`, the latitude and longitude, to tell where the sun stands",
-        )),
-        (Daylight::Sun { .. } | Daylight::None, Some(_), _) => Err(contradiction(
+    let (direct, date) = (&options.sun, &options.date);
+    let Some(moment) = date.value.filter(|_| !direct.origin.beats(date.origin)) else {
+        return Ok(match direct.value {
+            Daylight::Sun { azimuth, elevation } => Some((azimuth, elevation)),
+            Daylight::Auto | Daylight::None => None,
+        });
+    };
+    if direct.value != Daylight::Auto && !date.origin.beats(direct.origin) {
+        return Err(contradiction(
             "`sun` and `date` both say where the sun is; give one of them",
-        )),
+        ));
     }
+    let Some(place) = options.place.value else {
+        return Err(contradiction(
+            "`date` needs `place`, the latitude and longitude, to tell where the sun stands",
+        ));
+    };
+    let (azimuth, elevation) = place.sun(moment);
+    if elevation.degrees() > 0.0 {
+        return Ok(Some((azimuth, elevation)));
+    }
+    Err(contradiction(&format!(
+        "at `date` {} the sun is {:.1}° below the horizon of `place` {}: there is no daylight",
+        date.text,
+        -elevation.degrees(),
+        options.place.text
+    )))
 }
 
 fn contradiction(message: &str) -> Failure {
