@@ -10,6 +10,13 @@
 //! Earth's Surface for Cloudless Atmospheres. Journal of Climate and Applied Meteorology 25, 1986; also report SERI/TR-215-2436.
 //! <https://doi.org/10.2172/5986936>
 //!
+//! # BornWolf1999
+//! M. Born, E. Wolf: Principles of Optics. 7th edition. Cambridge University Press, 1999.
+//!
+//! # Burley2012
+//! B. Burley: Physically-Based Shading at Disney. SIGGRAPH 2012 course notes.
+//! <https://disneyanimation.com/publications/physically-based-shading-at-disney/>
+//!
 //! # Burley2020
 //! B. Burley: Practical Hash-based Owen Scrambling. Journal of Computer Graphics Techniques 9(4), 2020.
 //! <https://jcgt.org/published/0009/04/01/>
@@ -26,6 +33,10 @@
 //! T. Duff, J. Burgess, P. Christensen, C. Hery, A. Kensler, M. Liani, R. Villemin: Building an Orthonormal Basis, Revisited.
 //! Journal of Computer Graphics Techniques 6(1), 2017. <https://jcgt.org/published/0006/01/01/>
 //!
+//! # DupuyBenyoub2023
+//! J. Dupuy, A. Benyoub: Sampling Visible GGX Normals with Spherical Caps. Computer Graphics Forum 42(8), 2023.
+//! <https://doi.org/10.1111/cgf.14867>
+//!
 //! # Ernst2006
 //! M. Ernst, M. Stamminger, G. Greiner: Filter Importance Sampling. IEEE Symposium on Interactive Ray Tracing, 2006.
 //! <https://doi.org/10.1109/RT.2006.280223>
@@ -40,6 +51,14 @@
 //! # Harris1978
 //! F. Harris: On the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform. Proceedings of the IEEE
 //! 66(1), 1978. <https://doi.org/10.1109/PROC.1978.10837>
+//!
+//! # Heitz2014
+//! E. Heitz: Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs. Journal of Computer Graphics
+//! Techniques 3(2), 2014. <https://jcgt.org/published/0003/02/03/>
+//!
+//! # Heitz2018
+//! E. Heitz: Sampling the GGX Distribution of Visible Normals. Journal of Computer Graphics Techniques 7(4), 2018.
+//! <https://jcgt.org/published/0007/04/01/>
 //!
 //! # Heitz2019
 //! E. Heitz: A Low-Distortion Map Between Triangle and Square. 2019. <https://hal.science/hal-02073696>
@@ -69,6 +88,10 @@
 //!
 //! # KhronosNeutral
 //! Khronos Group: Khronos PBR Neutral Tone Mapper, 2024. <https://github.com/KhronosGroup/ToneMapping>
+//!
+//! # Lafortune1994
+//! E. Lafortune, Y. Willems: Using the Modified Phong Reflectance Model for Physically Based Rendering. Report CW 197,
+//! Katholieke Universiteit Leuven, 1994.
 //!
 //! # Meister2018a
 //! D. Meister, J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction. IEEE Transactions on
@@ -103,6 +126,10 @@
 //! E. Reinhard, M. Stark, P. Shirley, J. Ferwerda: Photographic Tone Reproduction for Digital Images. ACM Transactions on
 //! Graphics 21(3), 2002. <https://doi.org/10.1145/566654.566575>
 //!
+//! # Schlick1994
+//! C. Schlick: An Inexpensive BRDF Model for Physically-Based Rendering. Computer Graphics Forum 13(3), 1994.
+//! <https://doi.org/10.1111/1467-8659.1330233>
+//!
 //! # Shirley1997
 //! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.
 //! <https://doi.org/10.1080/10867651.1997.10487479>
@@ -114,6 +141,10 @@
 //! G. L. Steele, J. L. White: How to Print Floating-Point Numbers Accurately. Proceedings of PLDI, 1990.
 //! <https://doi.org/10.1145/93542.93559>
 //!
+//! # Veach1997
+//! E. Veach: Robust Monte Carlo Methods for Light Transport Simulation. Dissertation, Stanford University, 1997.
+//! <https://graphics.stanford.edu/papers/veach_thesis/>
+//!
 //! # VeachGuibas1995
 //! E. Veach, L. Guibas: Optimally Combining Sampling Techniques for Monte Carlo Rendering. SIGGRAPH, 1995.
 //! <https://doi.org/10.1145/218380.218498>
@@ -124,6 +155,10 @@
 //! # Vose1991
 //! M. Vose: A Linear Algorithm for Generating Random Numbers with a Given Distribution. IEEE Transactions on Software
 //! Engineering 17(9), 1991. <https://doi.org/10.1109/32.92917>
+//!
+//! # Walter2007
+//! B. Walter, S. Marschner, H. Li, K. Torrance: Microfacet Models for Refraction through Rough Surfaces. Eurographics
+//! Symposium on Rendering, 2007. <https://doi.org/10.2312/EGWR/EGSR07/195-206>
 //!
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.

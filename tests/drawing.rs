@@ -8,7 +8,6 @@ use understory::geometry::Shape;
 use understory::growth::{Growth, GrowthOptions};
 use understory::interpret::{Interpretation, Limits, interpret};
 use understory::light::Light;
-use understory::material::Scattering;
 use understory::scene::Scene;
 use understory::scene::description::PlacedShape;
 use understory::syntax::parse;
@@ -39,8 +38,7 @@ fn shapes(drawn: &Interpretation) -> &[PlacedShape] {
 
 fn reflectance(drawn: &Interpretation, at: usize) -> Rgb {
     let material = &drawn.scene.materials[shapes(drawn)[at].material.0 as usize];
-    let Scattering::Diffuse { sides } = &material.scattering;
-    sides[0].reflectance
+    material.sides[0].reflectance
 }
 
 /// Golden 40: every module with a body draws it, and what follows stays where it was.
@@ -98,7 +96,7 @@ fn leaves_transmit() {
         "static Phong leaf() { Phong p = new Phong(); p.setDiffuse(new RGBColor(0.1, 0.4, 0.1));
             p.setDiffuseTransparency(new RGBColor(0.2, 0.3, 0.1)); return p; }",
     );
-    let Scattering::Diffuse { sides } = &drawn.scene.materials[0].scattering;
+    let sides = &drawn.scene.materials[0].sides;
     assert!((sides[1].transmittance.g - 0.3).abs() < 1e-7);
     assert!((sides[1].reflectance.g - 0.4).abs() < 1e-7);
 }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use understory::color::Rgb;
 use understory::light::{Dome, Environment, Sky, SunDisk};
-use understory::material::{Material, Scattering, ScatteringFrame, Side};
+use understory::material::{Density, Material, ScatterNumbers, ScatteringFrame, Side, Transport};
 use understory::math::angle::Angle;
 use understory::math::frame::Frame;
 use understory::math::stats::chi_squared_upper_tail;
@@ -158,6 +158,16 @@ fn flat_warps() {
     }
 }
 
+const RADIANCE: Transport = Transport::Radiance;
+
+/// Numbers for surfaces that have no lobes to choose among.
+fn matt(direction: DVec2) -> ScatterNumbers {
+    ScatterNumbers {
+        direction,
+        lobe: DVec2::ZERO,
+    }
+}
+
 fn tilted(normal_s: DVec3) -> ScatteringFrame {
     ScatteringFrame {
         normal_g: DVec3::new(0.6, 0.0, 0.8),
@@ -171,40 +181,40 @@ fn materials() {
         reflectance: Rgb::splat(rho),
         transmittance: Rgb::splat(tau),
     };
-    let two_sided = Scattering::Diffuse {
-        sides: [side(0.5, 0.2), side(0.1, 0.6)],
-    };
+    let two_sided = Material::matt([side(0.5, 0.2), side(0.1, 0.6)]);
     let flat = tilted(DVec3::new(0.6, 0.0, 0.8));
     let cases = [
-        (
-            "lambert",
-            Material::lambert(Rgb::new(0.1, 0.5, 0.9)).scattering,
-        ),
+        ("lambert", Material::lambert(Rgb::new(0.1, 0.5, 0.9))),
         (
             "leaf",
-            Material::leaf(Rgb::new(0.1, 0.2, 0.1), Rgb::new(0.0, 0.3, 0.1)).scattering,
+            Material::leaf(Rgb::new(0.1, 0.2, 0.1), Rgb::new(0.0, 0.3, 0.1)),
         ),
-        (
-            "transmitting only",
-            Material::leaf(Rgb::BLACK, Rgb::WHITE).scattering,
-        ),
+        ("transmitting only", Material::leaf(Rgb::BLACK, Rgb::WHITE)),
         ("two-sided", two_sided),
     ];
-    for (name, scattering) in &cases {
+    for (name, material) in &cases {
+        let scattering = material.scattering();
         for wo in [DVec3::Z, DVec3::NEG_Z] {
-            let sample = |u| scattering.sample(&flat, wo, u).map(|s| s.wi);
-            let pdf = |w| scattering.pdf_solid_angle(&flat, wo, w);
+            let sample = |u| {
+                scattering
+                    .sample(&flat, wo, matt(u), RADIANCE)
+                    .map(|s| s.wi)
+            };
+            let pdf = |w| scattering.pdf_solid_angle(&flat, wo, w, RADIANCE);
             check(&format!("{name} from {wo}"), sample, pdf, 24);
         }
     }
     // A bent shading normal changes cosines and density together.
     let bent = tilted(DVec3::new(0.2, 0.4, 0.9));
-    let leaf = &cases[1].1;
-    let sample = |u| leaf.sample(&bent, DVec3::Z, u).map(|s| s.wi);
+    let leaf = cases[1].1.scattering();
+    let sample = |u| {
+        leaf.sample(&bent, DVec3::Z, matt(u), RADIANCE)
+            .map(|s| s.wi)
+    };
     check(
         "bent",
         sample,
-        |w| leaf.pdf_solid_angle(&bent, DVec3::Z, w),
+        |w| leaf.pdf_solid_angle(&bent, DVec3::Z, w, RADIANCE),
         24,
     );
 }
@@ -212,17 +222,18 @@ fn materials() {
 /// f · cos / pdf must equal the weight that sampling hands out, and energy must be the albedo.
 #[test]
 fn weights_and_albedo() {
-    let leaf = Material::leaf(Rgb::new(0.1, 0.2, 0.3), Rgb::new(0.05, 0.4, 0.1)).scattering;
+    let leaf = Material::leaf(Rgb::new(0.1, 0.2, 0.3), Rgb::new(0.05, 0.4, 0.1));
+    let leaf = leaf.scattering();
     let frame = tilted(DVec3::new(0.6, 0.0, 0.8));
     let wo = DVec3::new(0.3, 0.5, 0.7).normalize();
     for i in 0..1000 {
-        let s = leaf.sample(&frame, wo, uniform(i)).unwrap();
-        let pdf = leaf.pdf_solid_angle(&frame, wo, s.wi);
-        let ratio = leaf.value_cos(&frame, wo, s.wi) / pdf;
-        assert_eq!(pdf, s.pdf_solid_angle);
+        let s = leaf.sample(&frame, wo, matt(uniform(i)), RADIANCE).unwrap();
+        let pdf = leaf.pdf_solid_angle(&frame, wo, s.wi, RADIANCE);
+        let ratio = leaf.value_cos(&frame, wo, s.wi, RADIANCE) / pdf;
+        assert_eq!(Density::SolidAngle(pdf), s.density);
         assert!((ratio - s.weight).map(f64::abs).max_channel() < 1e-12);
     }
-    let albedo: f64 = integrate(|w| leaf.value_cos(&frame, wo, w).g, 24)
+    let albedo: f64 = integrate(|w| leaf.value_cos(&frame, wo, w, RADIANCE).g, 24)
         .iter()
         .sum();
     assert!((albedo - 0.6).abs() < 1e-3, "{albedo}");
@@ -230,15 +241,16 @@ fn weights_and_albedo() {
 
 #[test]
 fn reciprocity_of_leaves() {
-    let leaf = Material::leaf(Rgb::new(0.1, 0.2, 0.3), Rgb::new(0.05, 0.4, 0.1)).scattering;
+    let leaf = Material::leaf(Rgb::new(0.1, 0.2, 0.3), Rgb::new(0.05, 0.4, 0.1));
+    let leaf = leaf.scattering();
     let frame = tilted(DVec3::new(0.6, 0.0, 0.8));
     for i in 0..1000 {
         let (a, b) = (
             warp::sphere(uniform(2 * i)),
             warp::sphere(uniform(2 * i + 1)),
         );
-        let ab = leaf.value_cos(&frame, a, b) / frame.normal_s.dot(b).abs();
-        let ba = leaf.value_cos(&frame, b, a) / frame.normal_s.dot(a).abs();
+        let ab = leaf.value_cos(&frame, a, b, RADIANCE) / frame.normal_s.dot(b).abs();
+        let ba = leaf.value_cos(&frame, b, a, RADIANCE) / frame.normal_s.dot(a).abs();
         assert!((ab - ba).map(f64::abs).max_channel() < 1e-12);
     }
 }

@@ -9,6 +9,7 @@
 
 mod context;
 pub mod driver;
+pub mod medium;
 pub mod mis;
 pub mod path;
 pub mod sources;

@@ -3,18 +3,22 @@
 //! Source: [Kajiya1986](crate::references#kajiya1986), with light sampling at every vertex combined with scattered rays
 //! ([`mis`](super::mis)) and Russian roulette. Unbiased: no clamping, no depth limit unless one is asked for.
 //!
-//! A surface of alpha below 1 is met with probability alpha and otherwise not there at all, which is not a scattering event;
-//! shadow rays multiply `1 - alpha` instead. Both have the same mean.
+//! What lets light straight through (alpha, panes) is met by chance and otherwise not there at all, which is not a scattering
+//! event; shadow rays multiply the fraction that passes instead. Both have the same mean.
+//!
+//! Mirrors and smooth glass send light into single directions, which light sampling cannot meet: light found behind them counts
+//! in full. So light of a lamp without extent, or of the small disk of the sun, that comes through curved glass is not found.
 
+use super::medium::{Bodies, left_after};
 use super::mis::power_heuristic;
 use super::sources::{Reach, Shading, Sources};
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
-use crate::material::{Material, ScatteringFrame};
+use crate::material::{Density, Optics, ScatterNumbers, ScatteringFrame, Transport};
 use crate::math::Ray;
 use crate::sampler::{Sampler, Use};
 use crate::scene::{Scene, SurfacePoint};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Settings of the path tracer.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +66,7 @@ impl Integrator for Path {
         Ok(Box::new(PathEstimator {
             scene,
             sources: Sources::new(scene),
+            bodies: Bodies::new(scene),
             settings: self.clone(),
         }))
     }
@@ -71,6 +76,7 @@ impl Integrator for Path {
 struct PathEstimator<'s> {
     scene: &'s Scene,
     sources: Sources<'s>,
+    bodies: Bodies<'s>,
     settings: Path,
 }
 
@@ -78,10 +84,20 @@ struct PathEstimator<'s> {
 #[derive(Clone, Copy)]
 struct LastScattering {
     position: DVec3,
-    /// Density of the ray's direction per steradian.
-    pdf_solid_angle: f64,
+    /// With which density the ray's direction was chosen.
+    density: Density,
     /// Which lights were sampled there.
     reach: Reach,
+}
+
+/// What a ray leads to.
+struct Way<'s> {
+    /// The surface that its light comes from, unless it meets none.
+    end: Option<(SurfacePoint, Optics<'s>)>,
+    /// How far away that is, metres.
+    distance: f64,
+    /// What the chances taken on the way have to be made up for with.
+    weight: Rgb,
 }
 
 impl RadianceEstimator for PathEstimator<'_> {
@@ -89,21 +105,25 @@ impl RadianceEstimator for PathEstimator<'_> {
         // L radiance so far, β throughput, p_b density of the last scattering ([Kajiya1986]; Veach's thesis, §9 and §10).
         let mut radiance = Rgb::BLACK;
         let mut throughput = Rgb::WHITE;
+        let mut compression = 1.0;
         let mut last: Option<LastScattering> = None;
+        let mut media = self.bodies.around(ray.origin);
+        let mut reach = Reach::First;
         let mut ray = *ray;
 
         for n_scatterings in 0_u32.. {
             sampler.start_vertex(n_scatterings.saturating_add(1));
 
             // Find the next path vertex, or add the sky and stop.
-            let Some(point) = self.next_surface(&ray, sampler, rays) else {
+            let way = self.follow(&ray, sampler, rays);
+            throughput *= way.weight * left_after(media.absorption(), way.distance);
+            let Some((point, optics)) = way.end else {
                 radiance += throughput * self.escaping_radiance(ray.direction, last);
                 break;
             };
-            let material = self.scene.material(point.material);
 
             // Add what the surface emits, weighted against having sampled it as a light from the last vertex.
-            radiance += throughput * self.emitted_radiance(&point, material, &ray, last);
+            radiance += throughput * self.emitted_radiance(&point, &optics, &ray, last);
             if self
                 .settings
                 .max_depth
@@ -118,41 +138,55 @@ impl RadianceEstimator for PathEstimator<'_> {
                 normal_g: point.normal_g,
                 normal_s: point.normal_s,
             };
-            let reach = if n_scatterings == 0 {
-                Reach::First
-            } else {
-                Reach::Later
-            };
             let choice = sampler.point(Use::Choice);
-            let shading = Shading {
-                point: &point,
-                frame: &frame,
-                scattering: &material.scattering,
-                wo,
-            };
-            let direct =
-                self.sources
-                    .direct(&shading, reach, self.settings.strategies, sampler, rays);
-            radiance += throughput * direct;
+            if optics.scattering.is_smooth() {
+                let shading = Shading {
+                    point: &point,
+                    frame: &frame,
+                    scattering: &optics.scattering,
+                    wo,
+                    absorption: [
+                        media.absorption(),
+                        self.bodies.beyond(&media, &point, &frame, wo),
+                    ],
+                };
+                let strategies = self.settings.strategies;
+                radiance += throughput
+                    * self
+                        .sources
+                        .direct(&shading, reach, strategies, sampler, rays);
+            }
 
             // Scatter.
-            let u = sampler.point(Use::Direction);
-            let Some(scattered) = material.scattering.sample(&frame, wo, u) else {
-                break;
+            let numbers = ScatterNumbers {
+                direction: sampler.point(Use::Direction),
+                lobe: if optics.scattering.is_matt() {
+                    DVec2::ZERO
+                } else {
+                    sampler.point(Use::Lobe)
+                },
             };
+            let scattered = optics
+                .scattering
+                .sample(&frame, wo, numbers, Transport::Radiance);
+            let Some(scattered) = scattered else { break };
             throughput *= scattered.weight;
             if throughput.is_black() {
                 break;
             }
+            self.bodies
+                .cross(&mut media, &point, &frame, [wo, scattered.wi]);
 
             // Go on with a probability that falls with the throughput, so that long dim paths stay affordable and the
-            // estimate stays unbiased.
+            // estimate stays unbiased. That light is compressed inside glass makes no path more worthy.
+            compression *= scattered.compression;
             if self
                 .settings
                 .roulette_after
                 .is_some_and(|after| n_scatterings >= after)
             {
-                let survival = throughput.max_channel().min(HIGHEST_SURVIVAL);
+                let worth = throughput.max_channel() / compression;
+                let survival = worth.min(HIGHEST_SURVIVAL);
                 if choice.y >= survival {
                     break;
                 }
@@ -160,40 +194,77 @@ impl RadianceEstimator for PathEstimator<'_> {
             }
             last = Some(LastScattering {
                 position: point.position,
-                pdf_solid_angle: scattered.pdf_solid_angle,
+                density: scattered.density,
                 reach,
             });
+            // What a mirror shows is seen as directly as the mirror.
+            if scattered.density != Density::Delta {
+                reach = Reach::Later;
+            }
             ray = point.spawn_ray(scattered.wi);
         }
         radiance
     }
 }
 
+impl Way<'_> {
+    /// Decides by chance whether the light passes a surface, met under the cosine `cos`, straight through, and keeps the mean.
+    fn pass(&mut self, optics: &Optics<'_>, cos: f64, chance: f64) -> bool {
+        if optics.scattering.is_matt() {
+            // One fraction for all channels: nothing to make up for.
+            return chance >= optics.alpha;
+        }
+        let passage = optics.passage(cos);
+        let met = if optics.is_nothing_else() {
+            0.0
+        } else {
+            1.0 - passage.mean()
+        };
+        let passes = chance >= met;
+        self.weight *= if passes {
+            passage / (1.0 - met)
+        } else {
+            Rgb::splat(optics.alpha / met)
+        };
+        passes
+    }
+}
+
 impl PathEstimator<'_> {
-    /// The next surface that the light on this ray meets.
+    /// Follows a ray to the surface that its light comes from.
     ///
     /// It looks on along the same ray after each surface that it passes through, not along a ray that starts there: that would
     /// start off the surface, and so also off one that coincides with it.
-    fn next_surface(
-        &self,
-        ray: &Ray,
-        sampler: &Sampler,
-        rays: &mut RayCounts,
-    ) -> Option<SurfacePoint> {
+    fn follow(&self, ray: &Ray, sampler: &Sampler, rays: &mut RayCounts) -> Way<'_> {
+        let mut way = Way {
+            end: None,
+            distance: f64::INFINITY,
+            weight: Rgb::WHITE,
+        };
         rays.closest += 1;
-        let mut hit = self.scene.closest(ray)?;
-        for passage in 0_u16.. {
+        let mut next = self.scene.closest(ray);
+        let mut passages = 0..u16::MAX;
+        while let Some(hit) = next {
             let point = self.scene.surface(ray, &hit);
-            let alpha = self.scene.material(point.material).alpha;
+            let optics = self.scene.optics(&point);
             // At the last number the surface counts as met: 65,535 layers of glass are opaque.
-            if alpha >= 1.0 || sampler.point(Use::Passage(passage)).x < alpha || passage == u16::MAX
-            {
-                return Some(point);
+            let passes = match passages.next() {
+                Some(passage) if !optics.is_opaque() => {
+                    let chance = sampler.point(Use::Passage(passage)).x;
+                    let cos = point.normal_g.dot(ray.direction);
+                    way.pass(&optics, cos, chance)
+                }
+                _ => false,
+            };
+            if !passes {
+                way.end = Some((point, optics));
+                way.distance = hit.t;
+                break;
             }
             rays.closest += 1;
-            hit = self.scene.closest_after(ray, &hit)?;
+            next = self.scene.closest_after(ray, &hit);
         }
-        None
+        way
     }
 
     /// Radiance of sky and sun along a ray that meets nothing.
@@ -216,11 +287,11 @@ impl PathEstimator<'_> {
     fn emitted_radiance(
         &self,
         point: &SurfacePoint,
-        material: &Material,
+        optics: &Optics<'_>,
         ray: &Ray,
         last: Option<LastScattering>,
     ) -> Rgb {
-        let emission = material.emission[usize::from(!point.is_front)];
+        let emission = optics.emission[usize::from(!point.is_front)];
         if emission.is_black() {
             return Rgb::BLACK;
         }
@@ -232,15 +303,18 @@ impl PathEstimator<'_> {
     }
 
     /// Weight of light found by following a ray from `last`, when sampling lights there would have found it with the
-    /// density `light_pdf`. 1 for camera rays.
+    /// density `light_pdf`. 1 for camera rays and behind mirrors.
     fn hit_weight(
         &self,
         last: Option<LastScattering>,
         light_pdf: impl Fn(LastScattering) -> f64,
     ) -> f64 {
         let Some(last) = last else { return 1.0 };
+        let Density::SolidAngle(pdf) = last.density else {
+            return 1.0;
+        };
         match self.settings.strategies {
-            Strategies::Both => power_heuristic(last.pdf_solid_angle, light_pdf(last)),
+            Strategies::Both => power_heuristic(pdf, light_pdf(last)),
             Strategies::LightsOnly if light_pdf(last) > 0.0 => 0.0,
             Strategies::LightsOnly | Strategies::ScatteringOnly => 1.0,
         }

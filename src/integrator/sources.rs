@@ -1,12 +1,13 @@
 //! All light sources of a scene as one: choosing among them, sampling them, and the density with which that is done.
 
 use super::RayCounts;
+use super::medium::left_after;
 use super::mis::power_heuristic;
 use super::path::Strategies;
 use crate::color::Rgb;
 use crate::light::alias::AliasTable;
 use crate::light::{Dome, Light, LightSample, SunDisk};
-use crate::material::{Scattering, ScatteringFrame};
+use crate::material::{Scattering, ScatteringFrame, Transport};
 use crate::math::Ray;
 use crate::sampler::{Sampler, Use};
 use crate::scene::{EmitterId, Scene, SurfacePoint};
@@ -50,9 +51,31 @@ pub struct Shading<'a> {
     /// Its normals.
     pub frame: &'a ScatteringFrame,
     /// What it does to light.
-    pub scattering: &'a Scattering,
+    pub scattering: &'a Scattering<'a>,
     /// Unit direction from the point to where it is seen from.
     pub wo: DVec3,
+    /// What is absorbed per metre on the side of `wo` and on the other side, 1/m.
+    pub absorption: [Rgb; 2],
+}
+
+impl Shading<'_> {
+    /// f · |cos θ| for light from `wi`.
+    fn value_cos(&self, wi: DVec3) -> Rgb {
+        let scattering = self.scattering;
+        scattering.value_cos(self.frame, self.wo, wi, Transport::Radiance)
+    }
+
+    /// Density with which scattering finds `wi`.
+    fn pdf_solid_angle(&self, wi: DVec3) -> f64 {
+        let scattering = self.scattering;
+        scattering.pdf_solid_angle(self.frame, self.wo, wi, Transport::Radiance)
+    }
+
+    /// Fraction of the light that the clear body between leaves.
+    fn left(&self, light: &LightSample) -> Rgb {
+        let is_near = self.frame.is_in_front(self.wo) == self.frame.is_in_front(light.wi);
+        left_after(self.absorption[usize::from(!is_near)], light.distance)
+    }
 }
 
 /// The sources of a scene, ready for sampling.
@@ -138,9 +161,7 @@ impl<'s> Sources<'s> {
                 continue;
             };
             let weight = weight(shading, &light, probability, strategies);
-            let scattered = shading
-                .scattering
-                .value_cos(shading.frame, shading.wo, light.wi);
+            let scattered = shading.value_cos(light.wi) * shading.left(&light);
             let unshaded = scattered * light.facing_irradiance * (weight / probability);
             if !unshaded.is_black() {
                 rays.shadow += 1;
@@ -296,11 +317,7 @@ fn weight(
     match strategies {
         Strategies::LightsOnly => 1.0,
         Strategies::ScatteringOnly => 0.0,
-        Strategies::Both => {
-            let scattering = shading.scattering;
-            let other = scattering.pdf_solid_angle(shading.frame, shading.wo, light.wi);
-            power_heuristic(probability * pdf, other)
-        }
+        Strategies::Both => power_heuristic(probability * pdf, shading.pdf_solid_angle(light.wi)),
     }
 }
 

@@ -4,7 +4,6 @@ use crate::diag::{Diagnostic, FileId, Span};
 use crate::geometry::Shape;
 use crate::graph::{EdgeBits, Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::light::{Light, Sky};
-use crate::material::Scattering;
 use crate::rewrite::Instantiated;
 use crate::scene::Scene;
 use crate::scene::description::{OrganId, PlacedShape};
@@ -261,9 +260,7 @@ fn shapes(drawn: &Interpretation) -> &[PlacedShape] {
 }
 
 fn reflectance(drawn: &Interpretation, shape: &PlacedShape) -> Rgb {
-    let Scattering::Diffuse { sides } =
-        &drawn.scene.materials[shape.material.0 as usize].scattering;
-    sides[0].reflectance
+    drawn.scene.materials[shape.material.0 as usize].sides[0].reflectance
 }
 
 fn slugs(drawn: &Interpretation) -> Vec<&'static str> {

@@ -1,23 +1,90 @@
 //! What a surface does to light: scatters it, lets it through, or shines.
 //!
-//! Closed data, dispatched by `enum`: the inner loop has no trait objects. Directions point *away* from the surface.
+//! A [`Material`] has a matt part per side (Lambertian reflection and transmission), up to [`MAX_LOBES`] other lobes (mirror,
+//! Phong, GGX, glass, pane), an alpha and an emission. Closed data, dispatched by `enum`: the inner loop has no trait objects
+//! and takes no memory. Directions point *away* from the surface.
+//!
+//! Integrators never look into a material. They ask the scene for the [`Optics`] of a point, which is the material with
+//! whatever varies over the surface applied, and use three things of it:
+//! - [`Optics::passage`]: what goes straight through (alpha, panes). Not a scattering; shadow rays multiply it.
+//! - [`Optics::scattering`]: value, density and sampling of the rest.
+//! - [`Optics::emission`].
+//!
+//! ```text
+//! fresnel     smooth boundaries and sheets      microfacet  GGX
+//! lobe        the lobes as data                 specular    what each does
+//! scattering  all parts of a surface together   presets     mirror, glass, metal, ...
+//! ```
 
+pub mod fresnel;
+mod lobe;
+mod microfacet;
+mod presets;
 mod scattering;
+mod specular;
 
-pub use scattering::{ScatterSample, Scattering, ScatteringFrame, Side};
+pub use lobe::{Lobe, LobeKind, LobeSides, MAX_LOBES, Reflection};
+pub use scattering::{
+    Density, ScatterNumbers, ScatterSample, Scattering, ScatteringFrame, Side, Transport,
+};
 
 use crate::color::Rgb;
+use crate::math::tolerance::ENERGY_EXCESS;
 
 /// The optical properties of a surface, per side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// How the light that the surface catches is scattered.
-    pub scattering: Scattering,
+    /// The matt part: front, back.
+    pub sides: [Side; 2],
+    /// Everything else; at most [`MAX_LOBES`].
+    pub lobes: Box<[Lobe]>,
     /// Fraction of the light that meets the surface at all, in 0..=1; the rest, `1 - alpha`, passes straight through
     /// undisturbed (GroIMP's alpha). Scattering and emission are multiplied by it.
     pub alpha: f64,
     /// Emitted radiance of the front and the back side, W/(m² sr) per channel, the same in all directions.
     pub emission: [Rgb; 2],
+}
+
+/// What a surface does to light at one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Optics<'m> {
+    /// How the light that the surface catches is scattered; multiplied by `alpha`.
+    pub scattering: Scattering<'m>,
+    /// Fraction of the light that meets the surface at all.
+    pub alpha: f64,
+    /// Emitted radiance of the front and the back side, W/(m² sr); multiplied by `alpha`.
+    pub emission: [Rgb; 2],
+}
+
+impl Optics<'_> {
+    /// Whether nothing goes straight through.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.alpha >= 1.0 && !passes(self.scattering.lobes)
+    }
+
+    /// Whether it does nothing but let light straight through, and swallow the rest.
+    #[must_use]
+    pub fn is_nothing_else(&self) -> bool {
+        let is_through = |lobe: &Lobe| lobe.kind == LobeKind::Through;
+        self.emission.iter().all(|side| side.is_black())
+            && self.scattering.sides == [Side::default(); 2]
+            && self.scattering.lobes.iter().all(is_through)
+    }
+
+    /// Fraction per channel of the light, met under the cosine `cos` to the true normal, that goes straight through.
+    #[must_use]
+    pub fn passage(&self, cos: f64) -> Rgb {
+        let lobes = self.scattering.lobes.iter();
+        let through: Rgb = lobes.map(|lobe| lobe.passage(cos)).sum();
+        Rgb::splat(1.0 - self.alpha) + through * self.alpha
+    }
+}
+
+/// Whether any of the lobes lets light straight through.
+fn passes(lobes: &[Lobe]) -> bool {
+    let is_passage = |lobe: &Lobe| matches!(lobe.kind, LobeKind::Pane { .. } | LobeKind::Through);
+    lobes.iter().any(is_passage)
 }
 
 impl Default for Material {
@@ -30,36 +97,85 @@ impl Default for Material {
 impl Material {
     /// An opaque Lambertian surface that reflects the fraction `reflectance` (0..=1 per channel) on both sides.
     #[must_use]
-    pub const fn lambert(reflectance: Rgb) -> Self {
+    pub fn lambert(reflectance: Rgb) -> Self {
         Self::leaf(reflectance, Rgb::BLACK)
     }
 
     /// A bilambertian leaf, equal on both sides: it reflects ρ and transmits τ, both diffusely, and absorbs 1 - ρ - τ.
     #[must_use]
-    pub const fn leaf(reflectance: Rgb, transmittance: Rgb) -> Self {
+    pub fn leaf(reflectance: Rgb, transmittance: Rgb) -> Self {
         let side = Side {
             reflectance,
             transmittance,
         };
+        Self::matt([side, side])
+    }
+
+    /// A matt surface with own values for light that falls on the front and on the back.
+    #[must_use]
+    pub fn matt(sides: [Side; 2]) -> Self {
         Self {
-            scattering: Scattering::Diffuse {
-                sides: [side, side],
-            },
+            sides,
+            lobes: Box::default(),
             alpha: 1.0,
             emission: [Rgb::BLACK; 2],
         }
     }
 
+    /// What it does to light where nothing varies over the surface.
+    #[must_use]
+    pub fn optics(&self) -> Optics<'_> {
+        Optics {
+            scattering: self.scattering(),
+            alpha: self.alpha,
+            emission: self.emission,
+        }
+    }
+
+    /// How it scatters where nothing varies over the surface.
+    #[must_use]
+    pub fn scattering(&self) -> Scattering<'_> {
+        Scattering {
+            sides: self.sides,
+            lobes: &self.lobes,
+        }
+    }
+
+    /// Whether it has nothing but a matt part: radiosity and stored photons without directions are exact for it.
+    #[must_use]
+    pub fn is_matt(&self) -> bool {
+        self.lobes.is_empty()
+    }
+
+    /// Whether it sends light into single directions other than straight on: it can make caustics.
+    #[must_use]
+    pub fn is_specular(&self) -> bool {
+        let bends = |lobe: &Lobe| lobe.is_delta() && lobe.kind != LobeKind::Through;
+        self.lobes.iter().any(bends)
+    }
+
+    /// Whether a transparent body begins behind it.
+    #[must_use]
+    pub fn has_body(&self) -> bool {
+        self.scattering().body().is_some()
+    }
+
+    /// Whether no light goes straight through.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.optics().is_opaque()
+    }
+
     /// The same material, of which only the fraction `alpha` (0..=1) is there.
     #[must_use]
-    pub const fn with_alpha(mut self, alpha: f64) -> Self {
+    pub fn with_alpha(mut self, alpha: f64) -> Self {
         self.alpha = alpha;
         self
     }
 
     /// The same material, shining with these radiances in W/(m² sr) on its front and back.
     #[must_use]
-    pub const fn emitting(mut self, front: Rgb, back: Rgb) -> Self {
+    pub fn emitting(mut self, front: Rgb, back: Rgb) -> Self {
         self.emission = [front, back];
         self
     }
@@ -76,10 +192,22 @@ impl Material {
         self.alpha > 0.0 && self.emission.iter().any(|side| !side.is_black())
     }
 
-    /// Fraction per channel of the light falling on the given side (`true`: the front) that stays in the surface.
+    /// Fraction per channel of the light falling on the given side (`true`: the front) that stays in the surface for certain;
+    /// exact for matt surfaces, mirrors, glass and panes.
     #[must_use]
     pub fn absorptance(&self, is_front: bool) -> Rgb {
-        self.scattering.absorptance(is_front) * self.alpha
+        let through = self.passing();
+        let rest = Rgb::WHITE - through - self.scattering().albedo(is_front);
+        rest.map(|c| c.max(0.0)) * self.alpha
+    }
+
+    /// Fraction that goes straight through whatever the angle, alpha not counted.
+    fn passing(&self) -> Rgb {
+        let through = self
+            .lobes
+            .iter()
+            .filter(|lobe| lobe.kind == LobeKind::Through);
+        through.map(|lobe| lobe.weight).sum()
     }
 
     /// Checks that the numbers describe a surface that can exist: all finite, reflectance, transmittance and alpha in
@@ -96,7 +224,28 @@ impl Material {
                 return Err(MaterialError::Emission(radiance.to_array()));
             }
         }
-        self.scattering.validate()
+        self.validate_lobes()?;
+        for (name, side) in ["front", "back"].into_iter().zip(&self.sides) {
+            side.validate(name)?;
+        }
+        for (side, is_front) in [("front", true), ("back", false)] {
+            let sum = (self.scattering().albedo(is_front) + self.passing()).max_channel();
+            if sum > 1.0 + ENERGY_EXCESS {
+                return Err(MaterialError::MakesLight { side, sum });
+            }
+        }
+        Ok(())
+    }
+
+    fn validate_lobes(&self) -> Result<(), MaterialError> {
+        if self.lobes.len() > MAX_LOBES {
+            return Err(MaterialError::TooManyLobes(self.lobes.len()));
+        }
+        let is_body = |lobe: &&Lobe| matches!(lobe.kind, LobeKind::Dielectric { .. });
+        if self.lobes.iter().filter(is_body).count() > 1 {
+            return Err(MaterialError::TwoBodies);
+        }
+        self.lobes.iter().try_for_each(Lobe::validate)
     }
 }
 
@@ -119,6 +268,23 @@ pub enum MaterialError {
         /// What was given.
         value: f64,
     },
+    /// A number of a lobe is impossible.
+    #[error("{quantity} {value} is impossible")]
+    Lobe {
+        /// Which number.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A lobe lets light through on one side only.
+    #[error("a lobe lets light through from one side only")]
+    OneWay,
+    /// More lobes than there is room for.
+    #[error("{0} lobes, of which at most 4 are possible")]
+    TooManyLobes(usize),
+    /// Two transparent bodies behind one surface.
+    #[error("two transparent bodies behind one surface")]
+    TwoBodies,
     /// Reflectance plus transmittance exceeds 1: the surface would make light.
     #[error("reflectance + transmittance of the {side} side is {sum}, more than 1")]
     MakesLight {

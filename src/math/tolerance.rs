@@ -111,3 +111,10 @@ pub const EDGE_MARGIN_LIMIT: f64 = 1e-3;
 /// Nobody sees a hundred-thousandth of a picture's height; without it, the search for the furthest point would open every one of
 /// many things that reach equally far. Used by [`crate::scene`].
 pub const FRAMING_SLACK: f64 = 1e-5;
+
+/// The α (squared perceived roughness) of facets below which a surface counts as smooth.
+///
+/// Mirror images are then blurred by less than a third of a minute of arc, which no eye sees. Ten times larger would show in
+/// far reflections; ten times smaller is still computed well, but light sampling finds such reflections no more. Used by
+/// [`crate::material`].
+pub const SMOOTHEST_ALPHA: f64 = 1e-4;

@@ -33,6 +33,8 @@ pub enum Use {
     Light(u16),
     /// Whether light meets the so-manieth half-transparent surface on the way to this vertex.
     Passage(u16),
+    /// Which part of the surface scatters (x), and whether it reflects or refracts (y).
+    Lobe,
 }
 
 impl Use {
@@ -43,11 +45,12 @@ impl Use {
             Self::Choice => 1,
             Self::Light(nth) => 2 + 2 * nth as u32,
             Self::Passage(nth) => 3 + 2 * nth as u32,
+            Self::Lobe => 2 + 2 * (1 << 16),
         }
     }
 }
 
-/// Pads per vertex: two fixed uses and two counted ones of 65,536 each, rounded up.
+/// Pads per vertex: three fixed uses and two counted ones of 65,536 each, rounded up.
 const PADS_PER_VERTEX: u64 = 1 << 18;
 
 /// The points of one sample.
@@ -196,10 +199,10 @@ mod tests {
     fn no_two_uses_share_a_pad() {
         let counted = (0..=u16::MAX).flat_map(|k| [Use::Light(k), Use::Passage(k)]);
         let pads: BTreeSet<u32> = counted
-            .chain([Use::Direction, Use::Choice])
+            .chain([Use::Direction, Use::Choice, Use::Lobe])
             .map(Use::pad)
             .collect();
-        assert_eq!(pads.len(), 2 + 2 * 65_536);
+        assert_eq!(pads.len(), 3 + 2 * 65_536);
         assert!(pads.iter().all(|pad| u64::from(*pad) < PADS_PER_VERTEX));
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn bake(
     let mut group = empty_group(frame);
     store_shapes(&mut group, planned)?;
     store_instances(&mut group, planned, built)?;
-    let is_opaque = |shape: &ShapeRecord| materials[shape.material.0 as usize].alpha >= 1.0;
+    let is_opaque = |shape: &ShapeRecord| materials[shape.material.0 as usize].is_opaque();
     group.is_opaque = group.shapes.iter().all(is_opaque)
         && group
             .instances

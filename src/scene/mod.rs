@@ -56,9 +56,10 @@ pub use error::{Problem, SceneError};
 pub use query::Hit;
 pub use surface::SurfacePoint;
 
+use crate::color::Rgb;
 use crate::light::{Environment, Light};
-use crate::material::Material;
-use crate::math::Bounds3;
+use crate::material::{Material, Optics};
+use crate::math::{Bounds3, Ray};
 use bake::WorldPlane;
 use description::{MaterialId, SceneDescription};
 use glam::DAffine3;
@@ -207,10 +208,23 @@ impl Scene {
         stats
     }
 
-    /// The fraction of light that meets surfaces of a material at all.
+    /// What the surface does to light at a point.
     #[inline]
-    fn alpha(&self, id: MaterialId) -> f64 {
-        self.materials[id.0 as usize].alpha
+    #[must_use]
+    pub fn optics(&self, point: &SurfacePoint) -> Optics<'_> {
+        self.material(point.material).optics()
+    }
+
+    /// The fraction of light on `ray` that goes straight through the surface at `hit`, which has this material.
+    fn passage(&self, ray: &Ray, hit: &Hit, id: MaterialId) -> Rgb {
+        let material = self.material(id);
+        if material.is_matt() {
+            return Rgb::splat(1.0 - material.alpha);
+        }
+        // How much a pane lets through depends on the angle.
+        let point = self.surface(ray, hit);
+        self.optics(&point)
+            .passage(point.normal_g.dot(ray.direction))
     }
 }
 

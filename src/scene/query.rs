@@ -4,6 +4,7 @@ use super::Scene;
 use super::bake::WorldPlane;
 use super::group::{Group, Item, ItemKind};
 use crate::accel::{BoxRay, TraversalStack};
+use crate::color::Rgb;
 use crate::geometry::interval::{Interval, Line};
 use crate::geometry::triangle::{FlatHit, Shear, intersect_parallelogram, intersect_triangle};
 use crate::geometry::unit::Face;
@@ -44,8 +45,8 @@ trait Sink {
     fn wants(&self, hit: &Hit) -> bool {
         hit.t <= self.interval().until
     }
-    /// Takes an intersection inside the interval.
-    fn take(&mut self, hit: Hit, alpha: impl FnOnce() -> f64) -> ControlFlow<()>;
+    /// Takes an intersection inside the interval; `passage` tells what it lets straight through.
+    fn take(&mut self, hit: Hit, passage: impl FnOnce(&Hit) -> Rgb) -> ControlFlow<()>;
 }
 
 /// Keeps the nearest intersection; of several at the same distance, the one with the lowest number.
@@ -83,7 +84,7 @@ impl Sink for Nearest {
     }
 
     #[inline]
-    fn take(&mut self, hit: Hit, _: impl FnOnce() -> f64) -> ControlFlow<()> {
+    fn take(&mut self, hit: Hit, _: impl FnOnce(&Hit) -> Rgb) -> ControlFlow<()> {
         let is_nearer = |best: Hit| (hit.t, hit.primitive) < (best.t, best.primitive);
         if self.best.is_none_or(is_nearer) {
             self.until = hit.t;
@@ -96,7 +97,7 @@ impl Sink for Nearest {
 /// Multiplies what each surface lets through.
 struct Transmittance {
     interval: Interval,
-    value: f64,
+    value: Rgb,
 }
 
 impl Sink for Transmittance {
@@ -108,12 +109,12 @@ impl Sink for Transmittance {
     }
 
     #[inline]
-    fn take(&mut self, _: Hit, alpha: impl FnOnce() -> f64) -> ControlFlow<()> {
-        self.value *= 1.0 - alpha();
-        if self.value > 0.0 {
-            ControlFlow::Continue(())
-        } else {
+    fn take(&mut self, hit: Hit, passage: impl FnOnce(&Hit) -> Rgb) -> ControlFlow<()> {
+        self.value *= passage(&hit);
+        if self.value.is_black() {
             ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     }
 }
@@ -145,40 +146,36 @@ impl Scene {
         sink.best
     }
 
-    /// The fraction of light that the surfaces along the ray let straight through: the product of `1 - alpha` over all of
-    /// them, 0 as soon as one is opaque, 1 if there are none.
+    /// The fraction of light per channel that the surfaces along the ray let straight through: the product of their
+    /// [passages](crate::material::Optics::passage), black as soon as one is opaque, 1 if there are none.
     #[must_use]
-    pub fn transmittance(&self, ray: &Ray) -> f64 {
+    pub fn transmittance(&self, ray: &Ray) -> Rgb {
         let interval = Interval {
             after: ray.t_min,
             until: ray.t_max,
         };
         let mut sink = Transmittance {
             interval,
-            value: 1.0,
+            value: Rgb::WHITE,
         };
         match self.walk(ray, &mut sink) {
             ControlFlow::Continue(()) => sink.value,
-            ControlFlow::Break(()) => 0.0,
+            ControlFlow::Break(()) => Rgb::BLACK,
         }
     }
 
     /// Whether no light at all comes straight through the surfaces along the ray.
     #[must_use]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        self.transmittance(ray) <= 0.0
+        self.transmittance(ray).is_black()
     }
 
     /// Offers everything along the ray to the sink.
     fn walk<S: Sink>(&self, ray: &Ray, sink: &mut S) -> ControlFlow<()> {
-        let line = Line {
-            origin: ray.origin,
-            direction: ray.direction,
-        };
         for (index, plane) in self.planes.iter().enumerate() {
             let primitive = PrimitiveId(FIRST_PLANE + index as u64);
             if primitive != ray.skip {
-                self.offer_plane(plane, primitive, &line, sink)?;
+                self.offer_plane(plane, primitive, ray, sink)?;
             }
         }
         let Some(root) = self.groups.last() else {
@@ -189,10 +186,14 @@ impl Scene {
             first: 0,
             offset: 0.0,
         };
+        let line = Line {
+            origin: ray.origin,
+            direction: ray.direction,
+        };
         let line = transformed(&line, &self.to_root);
         let mut walk = Walk {
             scene: self,
-            skip: ray.skip,
+            ray,
             sink,
         };
         walk.visit(place, &line, &mut TraversalStack::default())
@@ -202,10 +203,14 @@ impl Scene {
         &self,
         plane: &WorldPlane,
         primitive: PrimitiveId,
-        line: &Line,
+        ray: &Ray,
         sink: &mut S,
     ) -> ControlFlow<()> {
-        let line = transformed(line, &plane.to_plane);
+        let line = Line {
+            origin: ray.origin,
+            direction: ray.direction,
+        };
+        let line = transformed(&line, &plane.to_plane);
         let t = -line.origin.z / line.direction.z;
         if !sink.interval().contains(t) {
             return ControlFlow::Continue(());
@@ -221,7 +226,7 @@ impl Scene {
         if !sink.wants(&hit) {
             return ControlFlow::Continue(());
         }
-        sink.take(hit, || self.alpha(plane.shape.material))
+        sink.take(hit, |hit| self.passage(ray, hit, plane.shape.material))
     }
 }
 
@@ -237,7 +242,7 @@ struct Place<'s> {
 
 struct Walk<'s, 'k, S> {
     scene: &'s Scene,
-    skip: PrimitiveId,
+    ray: &'k Ray,
     sink: &'k mut S,
 }
 
@@ -344,7 +349,7 @@ impl<S: Sink> Walk<'_, '_, S> {
     #[inline]
     fn take_flat(&mut self, place: Place, number: u32, hit: FlatHit) -> ControlFlow<()> {
         let primitive = PrimitiveId(place.first + u64::from(number));
-        if primitive == self.skip {
+        if primitive == self.ray.skip {
             return ControlFlow::Continue(());
         }
         let FlatHit { t, u, v } = hit;
@@ -364,7 +369,7 @@ impl<S: Sink> Walk<'_, '_, S> {
     fn offer_solid(&mut self, index: usize, place: Place, line: &Line) -> ControlFlow<()> {
         let solid = &place.group.solids[index];
         let primitive = PrimitiveId(place.first + u64::from(solid.number));
-        if primitive == self.skip {
+        if primitive == self.ray.skip {
             return ControlFlow::Continue(());
         }
         let line = transformed(line, &solid.to_unit);
@@ -391,12 +396,12 @@ impl<S: Sink> Walk<'_, '_, S> {
 
     #[inline]
     fn take(&mut self, place: Place, number: u32, hit: Hit) -> ControlFlow<()> {
-        let scene = self.scene;
-        self.sink.take(hit, || {
+        let (scene, ray) = (self.scene, self.ray);
+        self.sink.take(hit, |hit| {
             if place.group.is_opaque {
-                1.0
+                Rgb::BLACK
             } else {
-                scene.alpha(place.group.shape_of(number).material)
+                scene.passage(ray, hit, place.group.shape_of(number).material)
             }
         })
     }

@@ -3,6 +3,7 @@
 use crate::worlds::{Random, build, describe, icosphere, instance, mesh, placed, soup};
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::PI;
+use understory::color::Rgb;
 use understory::geometry::Shape;
 use understory::math::{PrimitiveId, Ray};
 use understory::scene::description::{Group, OrganId, SceneDescription};
@@ -433,7 +434,7 @@ fn what_is_empty_answers_nothing() {
         let ray = Ray::new(DVec3::ZERO, DVec3::X);
         assert_eq!(
             (scene.closest(&ray), scene.transmittance(&ray)),
-            (None, 1.0)
+            (None, Rgb::WHITE)
         );
         assert!(scene.bounds().is_empty() && scene.emitters().is_empty() && !scene.occluded(&ray));
     }
