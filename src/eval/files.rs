@@ -30,6 +30,12 @@ pub trait ModelFiles: Send {
     /// If there is none, or the model may not read it.
     fn read(&self, path: &str) -> Result<String, FileFault>;
 
+    /// The content of a file, such as a mesh or an image.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, FileFault>;
+
     /// Where a path leads to, if the model may write there.
     ///
     /// # Errors
@@ -56,6 +62,10 @@ impl ModelFiles for NoFiles {
     }
 
     fn read(&self, path: &str) -> Result<String, FileFault> {
+        Err(Self::refuse(path))
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, FileFault> {
         Err(Self::refuse(path))
     }
 

@@ -7,6 +7,7 @@
 //! image. All of it is `f64`.
 
 pub mod area;
+pub mod import;
 pub mod interval;
 pub mod quadratic;
 pub mod reduce;
@@ -47,6 +48,9 @@ pub enum Shape {
         length: f64,
     },
     /// `corner + u·edge_u + v·edge_v`, u and v in 0..1; its front looks along `edge_u × edge_v`.
+    ///
+    /// Textures lie on it as on GroIMP's `Parallelogram`, whose first edge is its length: their u runs along `edge_v`,
+    /// their v along `edge_u`, so that seen from the front they are mirrored.
     Parallelogram {
         /// One corner.
         corner: DVec3,
@@ -75,6 +79,6 @@ pub struct TriangleMesh {
     pub triangles: Vec<[u32; 3]>,
     /// Unit shading normals per corner, or empty.
     pub normals: Vec<DVec3>,
-    /// Texture coordinates per corner, or empty.
+    /// Texture coordinates per corner, or empty: u to the right, v upwards in the image, whose lower left corner is (0, 0).
     pub uvs: Vec<DVec2>,
 }

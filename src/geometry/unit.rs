@@ -59,7 +59,11 @@ pub struct UnitPoint {
     pub position: DVec3,
     /// Unit normal of the front: outwards, or +z for the disk.
     pub normal: DVec3,
-    /// Texture coordinates: turns round z and height for round shapes, 0..=1 across flat faces.
+    /// Texture coordinates in 0..=1, u to the right and v upwards in the image, as GroIMP lays them out.
+    ///
+    /// Round shapes: turns round z from +x through +y, and height (of the sphere the angle from -z, per half turn). Disks
+    /// and the faces of a cube: the square round them, seen from outside, so that the image is not mirrored; u runs along
+    /// x on the disks and on the faces across y and z, along the rim on those across x.
     pub uv: DVec2,
 }
 
@@ -287,7 +291,9 @@ fn sphere_point(near: DVec3) -> UnitPoint {
 
 fn disk_point(near: DVec3, height: f64, radius: f64, normal: DVec3) -> UnitPoint {
     let position = near.truncate().extend(height);
-    let uv = near.truncate() / (2.0 * radius) + DVec2::splat(0.5);
+    // Seen from below, y runs downwards.
+    let across = near.truncate() * DVec2::new(1.0, normal.z);
+    let uv = across / (2.0 * radius) + DVec2::splat(0.5);
     UnitPoint {
         position,
         normal,
@@ -310,7 +316,12 @@ fn cube_point(face: Face, near: DVec3, margin: f64) -> UnitPoint {
     position[axis] = side;
     let mut normal = DVec3::ZERO;
     normal[axis] = side;
-    let across = DVec2::new(position[(axis + 1) % 3], position[(axis + 2) % 3]);
+    let p = position;
+    let across = match axis {
+        0 => DVec2::new(side * p.y, p.z),
+        1 => DVec2::new(p.x, -side * p.z),
+        _ => DVec2::new(p.x, side * p.y),
+    };
     UnitPoint {
         position,
         normal,
@@ -453,6 +464,111 @@ mod tests {
             direction: DVec3::NEG_Z,
         };
         assert_eq!(UnitShape::Frustum(tube).intersect(&along, ALL), None);
+    }
+
+    fn uv(shape: UnitShape, face: Face, at: [f64; 3]) -> [f64; 2] {
+        shape.point(face, DVec3::from_array(at), 0.0).uv.to_array()
+    }
+
+    #[test]
+    fn textures_lie_as_groimp_lays_them() {
+        let tube = shapes()[2];
+        let (side, sphere) = (Face::Side, UnitShape::Sphere);
+        for (shape, face, at, expected) in [
+            // Once round from +x through +y, from the lowest point to the highest.
+            (sphere, side, [1.0, 0.0, 0.0], [0.0, 0.5]),
+            (sphere, side, [0.0, 1.0, 0.0], [0.25, 0.5]),
+            (sphere, side, [-1.0, 0.0, 0.0], [0.5, 0.5]),
+            (sphere, side, [0.0, -1.0, 0.0], [0.75, 0.5]),
+            (sphere, side, [0.0, 0.0, -1.0], [0.0, 0.0]),
+            (sphere, side, [0.0, 0.0, 1.0], [0.0, 1.0]),
+            (tube, side, [0.0, 1.0, 0.25], [0.25, 0.25]),
+            (tube, Face::Top, [0.5, 0.5, 1.0], [0.75, 0.75]),
+            (tube, Face::Base, [0.5, 0.5, 0.0], [0.75, 0.25]),
+            (UnitShape::Disk, side, [-1.0, 0.5, 0.0], [0.0, 0.75]),
+            (
+                UnitShape::Cube,
+                Face::Cube(0, true),
+                [1.0, 1.0, -1.0],
+                [1.0, 0.0],
+            ),
+            (
+                UnitShape::Cube,
+                Face::Cube(0, false),
+                [-1.0, 1.0, -1.0],
+                [0.0, 0.0],
+            ),
+            (
+                UnitShape::Cube,
+                Face::Cube(1, false),
+                [1.0, -1.0, -1.0],
+                [1.0, 0.0],
+            ),
+            (
+                UnitShape::Cube,
+                Face::Cube(1, true),
+                [1.0, 1.0, -1.0],
+                [1.0, 1.0],
+            ),
+            (
+                UnitShape::Cube,
+                Face::Cube(2, true),
+                [1.0, -1.0, 1.0],
+                [1.0, 0.0],
+            ),
+            (
+                UnitShape::Cube,
+                Face::Cube(2, false),
+                [1.0, -1.0, -1.0],
+                [1.0, 1.0],
+            ),
+        ] {
+            let found = uv(shape, face, at);
+            let near = found
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-12);
+            assert!(near, "{shape:?} {face:?} {at:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn textures_are_smooth_fill_their_square_and_are_not_mirrored() {
+        for shape in shapes().into_iter().chain([UnitShape::Disk]) {
+            let faces: Vec<Face> = match shape {
+                UnitShape::Cube => (0..6).map(|k| Face::Cube(k / 2, k % 2 == 0)).collect(),
+                UnitShape::Frustum(f) => {
+                    [(Face::Side, 1.0), (Face::Base, f.base), (Face::Top, f.top)]
+                        .into_iter()
+                        .filter(|(_, radius)| *radius > 0.0)
+                        .map(|(face, _)| face)
+                        .collect()
+                }
+                UnitShape::Sphere | UnitShape::Disk => vec![Face::Side],
+            };
+            for (face, line) in faces
+                .iter()
+                .flat_map(|f| lines(0.0).into_iter().map(move |l| (f, l)))
+            {
+                let near = line.direction + DVec3::Z * 0.5;
+                let here = shape.point(*face, near, 0.0);
+                assert!(here.uv.cmpge(DVec2::ZERO).all() && here.uv.cmple(DVec2::ONE).all());
+                // A small step along the surface is a small step in the image, and turns the same way round.
+                let along = here.normal.any_orthonormal_vector();
+                let steps = [along, here.normal.cross(along)].map(|step| {
+                    let there = shape.point(*face, here.position + step * 1e-6, 0.0);
+                    (there.uv - here.uv, there.position - here.position)
+                });
+                let is_seam = steps.iter().any(|(uv, _)| uv.length() > 0.1);
+                let is_flat = steps.iter().all(|(_, step)| step.length() > 0.9e-6);
+                let is_pole = here.normal.truncate().length() < 0.05
+                    || here.position.truncate().length() < 0.05;
+                if !is_seam && is_flat && !(is_pole && *face == Face::Side) {
+                    let turn = steps[0].0.perp_dot(steps[1].0);
+                    assert!(turn > 0.0, "{shape:?} {face:?} {here:?} {turn}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -83,6 +83,11 @@ impl Growth {
         self.machine.files = files;
     }
 
+    /// The files that the model may use.
+    pub fn files(&self) -> &dyn ModelFiles {
+        &*self.machine.files
+    }
+
     /// What the model has written so far: places as its files name them, and whole texts.
     pub fn written(&self) -> impl Iterator<Item = (&str, &str)> {
         let written = self.machine.written.iter();

@@ -9,6 +9,9 @@ pub trait Appearance: Payload {
 
     /// The lamp it describes, if it is a light.
     fn lamp(&self) -> Option<Lamp>;
+
+    /// The text it is, if it is one, such as the name of a file.
+    fn words(&self) -> Option<&str>;
 }
 
 /// How a surface looks, both sides alike; linear red, green, blue. Values are the model's and may be impossible.

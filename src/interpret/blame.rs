@@ -34,13 +34,24 @@ impl<S: Source> Painter<'_, S> {
     pub(super) fn warn(&mut self, node: NodeId, slug: &'static str, what: &str) {
         let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
         if self.warned.insert((slug, ty)) {
-            let place = Place::default();
-            let message = format!("{} {what}", self.name(node, place));
-            let span = self.span(node, place);
-            let warning = failure::diagnostic(Severity::Warning, slug, message, span);
-            let warning = failure::made_at(warning, self.source.made_at(ty));
-            self.warnings.push(warning);
+            self.warn_of(node, slug, what);
         }
+    }
+
+    /// Notes something about a node.
+    pub(super) fn warn_of(&mut self, node: NodeId, slug: &'static str, what: &str) {
+        let place = Place::default();
+        let message = format!("{} {what}", self.name(node, place));
+        let span = self.span(node, place);
+        let warning = failure::diagnostic(Severity::Warning, slug, message, span);
+        let warning = failure::made_at(warning, self.made(node));
+        self.warnings.push(warning);
+    }
+
+    /// Where in the text nodes of the type of a node are made.
+    pub(super) fn made(&self, node: NodeId) -> &[Span] {
+        let ty = self.source.graph().type_of(node).unwrap_or(TypeId(0));
+        self.source.made_at(ty)
     }
 
     /// The failure of a node whose size or place is no number, told of the node where that began.

@@ -94,6 +94,19 @@ pub(super) fn too_much(name: &str, limit: u64, span: Option<Span>) -> Failure {
     )
 }
 
+/// A file of meshes that cannot be drawn.
+pub(super) fn mesh_file(name: &str, file: &str, why: &str, made: &[Span]) -> Failure {
+    let message = format!("{name} cannot draw `{file}`: {why}");
+    let fault = diagnostic(Severity::Error, "mesh-file", message, None);
+    Box::new(made_at(fault, made))
+}
+
+/// A file that the model may not use.
+pub(super) fn file_refused(message: String, hint: String, made: &[Span]) -> Failure {
+    let fault = diagnostic(Severity::Error, "file-access", message, None);
+    Box::new(made_at(fault, made).hint(hint))
+}
+
 /// Bodies nested without end.
 pub(super) fn too_deep(name: &str, limit: usize, span: Option<Span>) -> Failure {
     let message = format!("the body of {name} stands in bodies {limit} deep");

@@ -4,6 +4,7 @@ use super::appearance::{Appearance, Lamp, LampKind, Surface};
 use super::failure::Failure;
 use super::source::{Body, Source};
 use crate::diag::Span;
+use crate::eval::files::ModelFiles;
 use crate::eval::object::Data;
 use crate::eval::{Purity, Value};
 use crate::graph::{Graph, NodeId, TypeId};
@@ -31,6 +32,10 @@ impl Source for Growth {
 
     fn release(&mut self, made: Instantiated) {
         self.free(made);
+    }
+
+    fn files(&self) -> &dyn ModelFiles {
+        Self::files(self)
     }
 
     fn is_stopped(&self) -> bool {
@@ -64,6 +69,13 @@ impl Appearance for Value {
                     alpha: 1.0 - (r + g + b) / 3.0,
                 })
             }
+            _ => None,
+        }
+    }
+
+    fn words(&self) -> Option<&str> {
+        match self {
+            Self::Text(text) => Some(text.as_str()),
             _ => None,
         }
     }

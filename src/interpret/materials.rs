@@ -2,6 +2,7 @@
 
 use super::appearance::Surface;
 use crate::color::{Rgb, palette};
+use crate::geometry::import::MeshMaterial;
 use crate::material::Material;
 use crate::math::tolerance::ENERGY_EXCESS;
 use crate::scene::description::MaterialId;
@@ -68,6 +69,15 @@ impl Materials {
         self.list.push(material);
         self.by_key.insert(key, id);
         (id, problem)
+    }
+
+    /// The material of a part of a mesh file.
+    pub(super) fn of_mesh(&mut self, of: &MeshMaterial) -> MaterialId {
+        let surface = Surface {
+            alpha: of.alpha,
+            ..Surface::opaque(of.base_color)
+        };
+        self.of(&surface, Rgb::from_array(of.emission)).0
     }
 
     /// Whether this material shines.

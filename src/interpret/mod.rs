@@ -8,6 +8,7 @@
 //!   body        instantiation bodies and their prototypes
 //!   instance    `Instance(node)`: groups drawn again
 //!   shapes      one node → one shape
+//!   meshes      meshes from files
 //!   surfaces    shader, colour or lamp of a node
 //!   materials   shaders and colours → materials, each once
 //!   lamps       lights → sources, emission
@@ -27,6 +28,7 @@ mod grown;
 mod instance;
 mod lamps;
 mod materials;
+mod meshes;
 mod organs;
 mod shapes;
 mod source;

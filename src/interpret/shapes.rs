@@ -27,6 +27,8 @@ pub(super) struct Fields {
     pub(super) light: FieldId,
     /// The shader of what has a surface.
     pub(super) shader: FieldId,
+    /// The file of a mesh.
+    pub(super) mesh_file: FieldId,
     /// What an instance draws again.
     pub(super) prototype: FieldId,
 }
@@ -51,6 +53,7 @@ pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
         area_light: field("Parallelogram", "light"),
         light: field("LightNode", "light"),
         shader: field("ShadedNull", "shader"),
+        mesh_file: field("Mesh", "file"),
         prototype: field("Instance", "prototype"),
     }
 });
@@ -102,7 +105,7 @@ pub(super) fn shape_of<O: Payload>(
                 parallelogram(length(), DVec3::new(width / 2.0, y, z))
             }
             Primitive::Plane => Some((Shape::Plane, 0.0)),
-            Primitive::Text | Primitive::Light => None,
+            Primitive::Text | Primitive::Light | Primitive::Mesh => None,
         },
         _ => None,
     }
@@ -138,31 +141,16 @@ fn frustum(length: f64, radii: [f64; 2], caps: [bool; 2]) -> Option<Drawn> {
 /// A box; one without extent along one axis is a flat plate.
 fn cuboid(length: f64, width: f64, height: f64) -> Option<Drawn> {
     let (half_x, half_y) = (width.abs() / 2.0, height.abs() / 2.0);
-    let shift = length.min(0.0);
-    let length = length.abs();
-    let corner = DVec3::new(-half_x, -half_y, 0.0);
-    let (x, y, z) = (
-        DVec3::X * (2.0 * half_x),
-        DVec3::Y * (2.0 * half_y),
-        DVec3::Z * length,
-    );
-    let plate = |edge_u, edge_v| Shape::Parallelogram {
-        corner,
-        edge_u,
-        edge_v,
+    let n_flat = [half_x, half_y, length]
+        .iter()
+        .filter(|s| **s == 0.0)
+        .count();
+    let shape = Shape::Box {
+        half_x,
+        half_y,
+        length: length.abs(),
     };
-    let shape = match [half_x == 0.0, half_y == 0.0, length == 0.0] {
-        [false, false, false] => Shape::Box {
-            half_x,
-            half_y,
-            length,
-        },
-        [true, false, false] => plate(y, z),
-        [false, true, false] => plate(z, x),
-        [false, false, true] => plate(x, y),
-        _ => return None,
-    };
-    Some((shape, shift))
+    (n_flat < 2).then_some((shape, length.min(0.0)))
 }
 
 /// A parallelogram of this length along the head between ∓`axis`; its front looks to local +y.

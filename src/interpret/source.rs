@@ -3,6 +3,7 @@
 use super::appearance::Appearance;
 use super::failure::Failure;
 use crate::diag::Span;
+use crate::eval::files::ModelFiles;
 use crate::graph::{Graph, NodeId, TypeId};
 use crate::rewrite::Instantiated;
 
@@ -26,6 +27,9 @@ pub trait Source {
 
     /// Frees what a body made.
     fn release(&mut self, made: Instantiated);
+
+    /// The files that the model may use.
+    fn files(&self) -> &dyn ModelFiles;
 
     /// Whether the user wants the drawing to stop.
     fn is_stopped(&self) -> bool;

@@ -42,17 +42,25 @@ impl<S: Source> Painter<'_, S> {
         if let Some(lamp) = lamp {
             return self.shining_material(node, &lamp, surface, shape, to_group);
         }
-        let Some(surface) = surface else {
-            return match index {
-                Some(index) => self.materials.ega(index),
-                None => self.materials.grey(),
-            };
-        };
+        if let Some(material) = self.shader_material(node) {
+            return material;
+        }
+        match index {
+            Some(index) => self.materials.ega(index),
+            None => self.materials.grey(),
+        }
+    }
+
+    /// The material of the shader that a node has of its own, if it has one.
+    pub(super) fn shader_material(&mut self, node: NodeId) -> Option<MaterialId> {
+        let graph = self.source.graph();
+        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
+        let surface = shader.and_then(Appearance::surface)?;
         let (material, problem) = self.materials.of(&surface, Rgb::BLACK);
         if let Some(problem) = problem {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
         }
-        material
+        Some(material)
     }
 
     /// The material of a parallelogram with a lamp of its own. A lamp without a shader shines white.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::color::{Rgb, palette};
 use crate::diag::{Diagnostic, FileId, Span};
+use crate::eval::files::{ModelFiles, NoFiles};
 use crate::geometry::Shape;
 use crate::graph::{EdgeBits, Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::light::{Light, Sky};
@@ -59,6 +60,10 @@ impl Appearance for Object {
             Self::Lamp(lamp) => Some(*lamp),
             Self::Null | Self::Node(_) | Self::Surface(_) => None,
         }
+    }
+
+    fn words(&self) -> Option<&str> {
+        None
     }
 }
 
@@ -208,6 +213,10 @@ impl Source for World {
         for node in made.nodes {
             self.graph.remove(node);
         }
+    }
+
+    fn files(&self) -> &dyn ModelFiles {
+        &NoFiles
     }
 
     fn is_stopped(&self) -> bool {

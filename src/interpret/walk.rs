@@ -5,6 +5,7 @@ use super::canvas::{About, Canvas};
 use super::failure::{self, Failure};
 use super::instance::Instances;
 use super::materials::Materials;
+use super::meshes::MeshFiles;
 use super::organs::Organs;
 use super::shapes::{is_finite, shape_of};
 use super::source::{Body, Source};
@@ -53,6 +54,7 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) poses: Poses,
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
+    pub(super) mesh_files: MeshFiles,
     /// The type of nodes that GroIMP draws in a grid of copies.
     cloner: Option<TypeId>,
     n_nodes: u64,
@@ -86,6 +88,7 @@ impl<'s, S: Source> Painter<'s, S> {
             poses: Poses::default(),
             prototypes: Prototypes::default(),
             instances: Instances::default(),
+            mesh_files: MeshFiles::default(),
             cloner,
             n_nodes: 0,
             body_nodes: 0,
@@ -229,6 +232,7 @@ impl<'s, S: Source> Painter<'s, S> {
         match does {
             Effect::Step { is_shoot: true, .. } => self.draw_shape(node, does, state, place)?,
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state)?,
+            Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place)?,
             Effect::Draw(_) => self.draw_shape(node, does, state, place)?,
             Effect::Instance => self.draw_instance(node, state, place)?,
             Effect::Group if self.cloner.is_some() && self.cloner == graph.type_of(node).ok() => {
@@ -335,7 +339,17 @@ impl<'s, S: Source> Painter<'s, S> {
         Ok(())
     }
 
-    fn charge(&mut self, bytes: usize, node: NodeId, place: Place) -> Result<(), Failure> {
+    /// Bytes that may still be taken.
+    pub(super) const fn memory_left(&self) -> u64 {
+        self.limits.memory.saturating_sub(self.memory)
+    }
+
+    pub(super) fn charge(
+        &mut self,
+        bytes: usize,
+        node: NodeId,
+        place: Place,
+    ) -> Result<(), Failure> {
         self.memory += bytes as u64;
         if self.memory <= self.limits.memory {
             return Ok(());

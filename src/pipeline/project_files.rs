@@ -171,10 +171,15 @@ impl ModelFiles for ProjectFiles {
     }
 
     fn read(&self, path: &str) -> Result<String, FileFault> {
+        let bytes = self.read_bytes(path)?;
+        Ok(String::from_utf8(bytes)
+            .unwrap_or_else(|e| e.into_bytes().iter().map(|&b| char::from(b)).collect()))
+    }
+
+    fn read_bytes(&self, path: &str) -> Result<Vec<u8>, FileFault> {
         let place = self.resolve(path)?;
         match (self.read)(&place) {
-            Ok(bytes) => Ok(String::from_utf8(bytes)
-                .unwrap_or_else(|e| e.into_bytes().iter().map(|&b| char::from(b)).collect())),
+            Ok(bytes) => Ok(bytes),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Err(FileFault::Missing(
                 format!("{} (No such file or directory)", place.display()),
             )),

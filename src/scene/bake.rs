@@ -206,6 +206,7 @@ fn bake_shape(planned: &PlannedShape, frame: GroupFrame) -> Baked {
                 corner,
                 edges,
                 number: 0,
+                is_turned: is_turned(planned.shape),
             })
         }
         (Reduced::Mesh, Shape::Mesh(mesh)) => Baked::Mesh(
@@ -215,6 +216,17 @@ fn bake_shape(planned: &PlannedShape, frame: GroupFrame) -> Baked {
                 .collect(),
         ),
         _ => Baked::Nothing,
+    }
+}
+
+/// Whether textures run along the second edge of the parallelogram that a shape is, then along the first, as GroIMP's do:
+/// across a `Parallelogram`, then along it.
+fn is_turned(shape: &Shape) -> bool {
+    match shape {
+        Shape::Parallelogram { .. } => true,
+        // The plate y = 0 has edges z and x.
+        Shape::Box { half_x, half_y, .. } => *half_x != 0.0 && *half_y == 0.0,
+        _ => false,
     }
 }
 

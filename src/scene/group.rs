@@ -121,6 +121,8 @@ pub(super) struct Quad {
     pub(super) corner: DVec3,
     pub(super) edges: [DVec3; 2],
     pub(super) number: u32,
+    /// Whether textures run along the second edge first.
+    pub(super) is_turned: bool,
 }
 
 /// A unit shape under an affine map.

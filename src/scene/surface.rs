@@ -7,7 +7,7 @@ use super::plan::MAX_DEPTH;
 use super::query::{FIRST_PLANE, Hit};
 use crate::math::tolerance::{EDGE_MARGIN, EDGE_MARGIN_LIMIT, SHADOW_GAP, SPAWN_SAFETY, gamma};
 use crate::math::{PrimitiveId, Ray};
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3, Vec2Swizzles};
 
 /// A point of a surface, seen along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -334,7 +334,7 @@ fn quad_point(
         error: (quad.corner.abs() + along_u.abs() + along_v.abs()) * gamma(7),
         normal_g,
         normal_s: normal_g,
-        uv,
+        uv: if quad.is_turned { uv.yx() } else { uv },
         is_flat: true,
     }
 }

@@ -99,6 +99,7 @@ pub enum Primitive {
     Plane,
     Text,
     Light,
+    Mesh,
 }
 
 impl Primitive {
@@ -106,7 +107,7 @@ impl Primitive {
     pub fn moves(self) -> bool {
         match self {
             Self::Box | Self::Cylinder | Self::Cone | Self::Frustum | Self::Parallelogram => true,
-            Self::Sphere | Self::Plane | Self::Text | Self::Light => false,
+            Self::Sphere | Self::Plane | Self::Text | Self::Light | Self::Mesh => false,
         }
     }
 }

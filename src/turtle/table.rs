@@ -726,7 +726,7 @@ const GROUPS: [BuiltinType; 4] = [
     ),
 ];
 
-const SOLIDS: [BuiltinType; 11] = [
+const SOLIDS: [BuiltinType; 12] = [
     ty(
         "Sphere",
         "ShadedNull",
@@ -840,6 +840,21 @@ const SOLIDS: [BuiltinType; 11] = [
         &[],
         NO_ARGUMENTS,
         "The endless plane through the turtle, perpendicular to its head.",
+    ),
+    ty(
+        "Mesh",
+        "ShadedNull",
+        Effect::Draw(Primitive::Mesh),
+        &[field(
+            "file",
+            FieldType::String,
+            0.0,
+            "",
+            "Name of the file, beside the model.",
+        )],
+        &[&[], &["file"]],
+        "Triangles from a `.obj`, `.glb` or `.gltf` file, in metres at the turtle's place; with a shader of its own it takes that \
+         for all of it (not in GroIMP). `.glb` and `.gltf` are turned so that their up is the head; a `.obj` stands as it is.",
     ),
     ty(
         "TextLabel",

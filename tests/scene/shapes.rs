@@ -439,3 +439,34 @@ fn what_is_empty_answers_nothing() {
         assert!(scene.bounds().is_empty() && scene.emitters().is_empty() && !scene.occluded(&ray));
     }
 }
+
+/// Across and then along a parallelogram; x and then y, y and then z, x and then z on plates that were boxes.
+#[test]
+fn textures_lie_across_and_along_flat_shapes() {
+    let leaf = Shape::Parallelogram {
+        corner: DVec3::new(-1.0, 0.0, 0.0),
+        edge_u: DVec3::Z * 4.0,
+        edge_v: DVec3::X * 2.0,
+    };
+    let plate = |half_x, half_y, length| Shape::Box {
+        half_x,
+        half_y,
+        length,
+    };
+    for (shape, from) in [
+        (leaf, DVec3::new(-0.5, 3.0, 3.0)),
+        (plate(1.0, 0.0, 4.0), DVec3::new(-0.5, 3.0, 3.0)),
+        (plate(0.0, 1.0, 4.0), DVec3::new(3.0, -0.5, 3.0)),
+        (plate(1.0, 2.0, 0.0), DVec3::new(-0.5, 1.0, 3.0)),
+    ] {
+        let scene = build(vec![placed(shape.clone(), DAffine3::IDENTITY, 0)]);
+        let axis = from.to_array().iter().position(|x| *x == 3.0).unwrap();
+        let toward = -DVec3::from_array(std::array::from_fn(|i| f64::from(u8::from(i == axis))));
+        let ray = Ray::new(from, toward);
+        let uv = scene.surface(&ray, &scene.closest(&ray).unwrap()).uv;
+        assert!(
+            (uv - DVec2::new(0.25, 0.75)).length() < 1e-9,
+            "{shape:?} {uv}"
+        );
+    }
+}
