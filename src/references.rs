@@ -141,6 +141,10 @@
 //! G. L. Steele, J. L. White: How to Print Floating-Point Numbers Accurately. Proceedings of PLDI, 1990.
 //! <https://doi.org/10.1145/93542.93559>
 //!
+//! # Urena2013
+//! C. Ureña, M. Fajardo, A. King: An Area-Preserving Parametrization for Spherical Rectangles. Computer Graphics Forum 32(4),
+//! 2013. <https://doi.org/10.1111/cgf.12151>
+//!
 //! # Veach1997
 //! E. Veach: Robust Monte Carlo Methods for Light Transport Simulation. Dissertation, Stanford University, 1997.
 //! <https://graphics.stanford.edu/papers/veach_thesis/>

@@ -123,7 +123,7 @@ impl RadianceEstimator for PathEstimator<'_> {
             };
 
             // Add what the surface emits, weighted against having sampled it as a light from the last vertex.
-            radiance += throughput * self.emitted_radiance(&point, &optics, &ray, last);
+            radiance += throughput * self.emitted_radiance(&point, &optics, last);
             if self
                 .settings
                 .max_depth
@@ -283,12 +283,11 @@ impl PathEstimator<'_> {
         radiance
     }
 
-    /// Radiance that a surface sends back along `ray`.
+    /// Radiance that a surface sends back along the ray that met it.
     fn emitted_radiance(
         &self,
         point: &SurfacePoint,
         optics: &Optics<'_>,
-        ray: &Ray,
         last: Option<LastScattering>,
     ) -> Rgb {
         let emission = optics.emission[usize::from(!point.is_front)];
@@ -297,7 +296,7 @@ impl PathEstimator<'_> {
         }
         let weight = self.hit_weight(last, |last| {
             self.sources
-                .emitter_pdf_solid_angle(point, last.position, ray.direction, last.reach)
+                .emitter_pdf_solid_angle(point, last.position, last.reach)
         });
         emission * weight
     }

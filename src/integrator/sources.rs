@@ -202,7 +202,7 @@ impl<'s> Sources<'s> {
         u: DVec2,
     ) -> Option<(LightSample, Ray)> {
         let emitter = &self.scene.emitters()[id.0 as usize];
-        let target = emitter.sample(u.to_array());
+        let target = emitter.sample_toward(point.position, u.to_array())?;
         let to_light = target.position - point.position;
         let distance = to_light.length();
         let wi = to_light.try_normalize()?;
@@ -211,7 +211,7 @@ impl<'s> Sources<'s> {
             .scene
             .material(emitter.material)
             .emitted_radiance(cos > 0.0);
-        let pdf = solid_angle_density(target.pdf_area, distance, cos)?;
+        let pdf = target.pdf_solid_angle;
         let light = LightSample {
             wi,
             distance,
@@ -247,22 +247,13 @@ impl<'s> Sources<'s> {
     }
 
     /// Density per steradian, choice of source included, with which sampling lights from `origin` finds the point `at` of
-    /// a shining surface that a ray of this direction has hit; 0 if that surface is not sampled.
+    /// a shining surface that a ray from there has hit; 0 if that surface is not sampled.
     #[must_use]
-    pub fn emitter_pdf_solid_angle(
-        &self,
-        at: &SurfacePoint,
-        origin: DVec3,
-        direction: DVec3,
-        reach: Reach,
-    ) -> f64 {
+    pub fn emitter_pdf_solid_angle(&self, at: &SurfacePoint, origin: DVec3, reach: Reach) -> f64 {
         let emitters = self.scene.emitters();
         let found = emitters.binary_search_by_key(&at.primitive, |emitter| emitter.primitive);
         let Ok(index) = found else { return 0.0 };
-        let pdf_area = emitters[index].pdf_area(at.normal_g);
-        let distance = (at.position - origin).length();
-        let cos = -direction.dot(at.normal_g);
-        let pdf = solid_angle_density(pdf_area, distance, cos).unwrap_or(0.0);
+        let pdf = emitters[index].pdf_toward(origin, at.position, at.normal_g);
         self.selection(reach)
             .probability(self.first_emitter + index)
             * pdf
@@ -319,13 +310,6 @@ fn weight(
         Strategies::ScatteringOnly => 0.0,
         Strategies::Both => power_heuristic(probability * pdf, shading.pdf_solid_angle(light.wi)),
     }
-}
-
-/// Density per steradian of a point that was chosen with a density per area, seen from `distance` under the angle to its
-/// normal with cosine `cos`; `None` where it is no number (edge on, or at no distance).
-fn solid_angle_density(pdf_area: f64, distance: f64, cos: f64) -> Option<f64> {
-    let pdf = pdf_area * distance * distance / cos.abs();
-    (pdf > 0.0 && pdf.is_finite()).then_some(pdf)
 }
 
 /// How often each source is chosen, not normalised: by power, half over all and half within each kind.

@@ -7,9 +7,11 @@ use super::description::{MaterialId, OrganId};
 use super::error::SceneError;
 use super::group::{Group, ItemKind, ShapeRecord};
 use super::query::Hit;
+use super::subtended::{SeenBall, SeenRectangle};
 use crate::geometry::area::RoundArea;
 use crate::geometry::unit::UnitShape;
 use crate::math::PrimitiveId;
+use crate::math::tolerance::SIMILARITY;
 use glam::{DAffine3, DVec3};
 
 /// How many emitters a scene may have; more are a mistake or need another kind of light source.
@@ -43,6 +45,26 @@ pub struct EmitterSample {
     pub pdf_area: f64,
 }
 
+/// A point chosen on an emitter to light another point with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TowardSample {
+    /// The point, metres.
+    pub position: DVec3,
+    /// Unit normal of the front side.
+    pub normal: DVec3,
+    /// Density per steradian, as seen from the lit point, with which it was chosen.
+    pub pdf_solid_angle: f64,
+}
+
+/// How an emitter looks from a point.
+enum Seen {
+    /// With its front normal.
+    Rectangle(SeenRectangle, DVec3),
+    Ball(SeenBall),
+    /// Nothing better is known than its area.
+    ByArea,
+}
+
 #[derive(Clone, Debug)]
 enum Form {
     /// Corner, two edges, and the front normal.
@@ -51,7 +73,13 @@ enum Form {
     Parallelogram(DVec3, [DVec3; 2], DVec3),
     /// The cube -1..=1, mapped into the world.
     Cube(DAffine3),
-    /// A sphere, disk or frustum.
+    /// A sphere, not stretched.
+    Ball {
+        center: DVec3,
+        radius: f64,
+        area: Box<RoundArea>,
+    },
+    /// A stretched sphere, a disk or a frustum.
     Round(Box<RoundArea>),
 }
 
@@ -89,7 +117,7 @@ impl Emitter {
                 let (position, normal) = sample_cube(to_world, self.area, u);
                 flat(position, normal)
             }
-            Form::Round(round) => {
+            Form::Round(round) | Form::Ball { area: round, .. } => {
                 let (position, normal) = round.sample(u);
                 EmitterSample {
                     position,
@@ -100,12 +128,75 @@ impl Emitter {
         }
     }
 
+    /// Chooses a point of the surface to light `from` with, evenly over the solid angle it subtends there where that has a
+    /// closed form (rectangles, balls), as [`Emitter::sample`] does otherwise. `None` if it is seen edge on, or from itself.
+    ///
+    /// `u` are two uniform random numbers in [0, 1).
+    #[must_use]
+    pub fn sample_toward(&self, from: DVec3, u: [f64; 2]) -> Option<TowardSample> {
+        let chosen = match self.seen(from) {
+            Seen::Rectangle(seen, normal) => TowardSample {
+                position: seen.sample(u),
+                normal,
+                pdf_solid_angle: 1.0 / seen.solid_angle(),
+            },
+            Seen::Ball(seen) => {
+                let (position, normal) = seen.sample(u);
+                TowardSample {
+                    position,
+                    normal,
+                    pdf_solid_angle: 1.0 / seen.solid_angle(),
+                }
+            }
+            Seen::ByArea => {
+                let EmitterSample {
+                    position,
+                    normal,
+                    pdf_area,
+                } = self.sample(u);
+                TowardSample {
+                    position,
+                    normal,
+                    pdf_solid_angle: solid_angle_density(pdf_area, position - from, normal)?,
+                }
+            }
+        };
+        Some(chosen)
+    }
+
+    /// The density per steradian with which [`Emitter::sample_toward`] chooses the point `at`, where the unit normal of the
+    /// front is `normal`; 0 if it cannot.
+    #[must_use]
+    pub fn pdf_toward(&self, from: DVec3, at: DVec3, normal: DVec3) -> f64 {
+        match self.seen(from) {
+            Seen::Rectangle(seen, _) => 1.0 / seen.solid_angle(),
+            // Only the half that is turned to the viewer is chosen.
+            Seen::Ball(_) if normal.dot(from - at) <= 0.0 => 0.0,
+            Seen::Ball(seen) => 1.0 / seen.solid_angle(),
+            Seen::ByArea => {
+                solid_angle_density(self.pdf_area(normal), at - from, normal).unwrap_or(0.0)
+            }
+        }
+    }
+
+    /// How it looks from a point.
+    fn seen(&self, from: DVec3) -> Seen {
+        match &self.form {
+            Form::Parallelogram(corner, edges, normal) => SeenRectangle::new(from, *corner, *edges)
+                .map_or(Seen::ByArea, |seen| Seen::Rectangle(seen, *normal)),
+            Form::Ball { center, radius, .. } => {
+                SeenBall::new(from, *center, *radius).map_or(Seen::ByArea, Seen::Ball)
+            }
+            Form::Triangle(..) | Form::Cube(_) | Form::Round(_) => Seen::ByArea,
+        }
+    }
+
     /// The density with which [`Emitter::sample`] chooses a point of the surface where the unit normal of the front is
     /// `normal`, per square metre.
     #[must_use]
     pub fn pdf_area(&self, normal: DVec3) -> f64 {
         match &self.form {
-            Form::Round(round) => round.pdf_area(normal),
+            Form::Round(round) | Form::Ball { area: round, .. } => round.pdf_area(normal),
             Form::Triangle(..) | Form::Parallelogram(..) | Form::Cube(_) => 1.0 / self.area,
         }
     }
@@ -151,8 +242,8 @@ impl Emitter {
                         Form::Cube(to_world),
                     ),
                     form => {
-                        let round = RoundArea::new(form, &to_world)?;
-                        (round.area(), Form::Round(Box::new(round)))
+                        let area = Box::new(RoundArea::new(form, &to_world)?);
+                        (area.area(), round(form, &to_world, area))
                     }
                 }
             }
@@ -167,6 +258,35 @@ impl Emitter {
             form,
         })
     }
+}
+
+/// A round form: a ball if it is one.
+fn round(form: UnitShape, to_world: &DAffine3, area: Box<RoundArea>) -> Form {
+    let m = to_world.matrix3;
+    let radius = m.x_axis.length();
+    let axes = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis / radius);
+    let is_even = (0..3).all(|i| {
+        (axes[i].length() - 1.0).abs() <= SIMILARITY
+            && axes[i].dot(axes[(i + 1) % 3]).abs() <= SIMILARITY
+    });
+    if form == UnitShape::Sphere && is_even {
+        Form::Ball {
+            center: to_world.translation,
+            radius,
+            area,
+        }
+    } else {
+        Form::Round(area)
+    }
+}
+
+/// Density per steradian of a point that was chosen with a density per area, `to` away, where the surface has this unit
+/// normal; `None` where it is no number (edge on, or at no distance).
+fn solid_angle_density(pdf_area: f64, to: DVec3, normal: DVec3) -> Option<f64> {
+    let distance = to.length();
+    let cos = to.dot(normal).abs() / distance;
+    let pdf = pdf_area * distance * distance / cos;
+    (pdf > 0.0 && pdf.is_finite()).then_some(pdf)
 }
 
 /// Areas of one face of a mapped cube per axis.

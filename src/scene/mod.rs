@@ -48,10 +48,11 @@ mod outline;
 mod placement;
 mod plan;
 mod query;
+mod subtended;
 mod surface;
 mod validate;
 
-pub use emitter::{Emitter, EmitterId, EmitterSample};
+pub use emitter::{Emitter, EmitterId, EmitterSample, TowardSample};
 pub use error::{Problem, SceneError};
 pub use query::Hit;
 pub use surface::SurfacePoint;
