@@ -563,3 +563,31 @@ fn texts_are_made_of_up_to_eight_values() {
     );
     assert!(bench.succeed("derive m.rgg").starts_with("12345678\n"));
 }
+
+#[test]
+fn a_model_lists_the_folder_of_its_data() {
+    let bench = Bench::new(
+        "import java.io.*;
+protected void init() {
+  File folder = new File(\"data/\"); File[] found = folder.listFiles(); String[] names = folder.list();
+  for (int i = 0; i < found.length; i++) {
+    println(names[i] + \" \" + found[i].getName() + \" \" + new BufferedReader(new FileReader(found[i])).readLine());
+  }
+  println(folder.isDirectory() + \" \" + found[0].isFile() + \" \" + found[0].getParent() + \" \" + new File(\"x\").exists());
+  println(new File(\"none\").listFiles() == null);
+}",
+    );
+    fs::create_dir_all(bench.path("data")).unwrap();
+    for name in ["b.csv", "a.csv", ".hidden"] {
+        bench.write(&format!("data/{name}"), name);
+    }
+    let printed = bench.succeed("derive m.rgg --steps 0");
+    let expected = "a.csv a.csv a.csv\nb.csv b.csv b.csv\ntrue true data false\ntrue\n";
+    assert!(printed.contains(expected), "{printed}");
+    bench.write(
+        "m.rgg",
+        "protected void init() { new java.io.File(\"/etc\").list(); }",
+    );
+    let message = bench.fail("derive m.rgg --steps 0", 1);
+    assert!(message.contains("--allow-path"), "{message}");
+}

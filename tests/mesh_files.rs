@@ -301,6 +301,10 @@ impl ModelFiles for Files {
     fn may_write(&self, path: &str) -> Result<String, FileFault> {
         self.place(path)
     }
+
+    fn list(&self, _: &str) -> Result<Option<Vec<String>>, FileFault> {
+        Ok(None)
+    }
 }
 
 fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {

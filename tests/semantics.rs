@@ -57,6 +57,46 @@ fn check_queries(start: &str, table: &[(&str, &str)]) {
 }
 
 #[test]
+fn loops_make_what_they_say() {
+    check(&[
+        // The body of `do` is made before the condition is looked at for the first time.
+        (
+            "B(0)",
+            "B ==> { int i = 5; } do (C(i) { i++; }) while (i < 3);",
+            "SC5",
+        ),
+        (
+            "B(0)",
+            "B ==> { int i = 0; } do (C(i) { i++; }) while (i < 3);",
+            "SC0C1C2",
+        ),
+        (
+            "B(0)",
+            "B ==> A(7) { int i = 0; } do ([C(i)] if (i == 1) { break; } { i++; }) while (i < 9) D(i);",
+            "SA7[C0][C1]D1",
+        ),
+        (
+            "B(0)",
+            "B ==> { int i = 0; } do { i += 2; } while (i < 3) C(i);",
+            "SC4",
+        ),
+        (
+            "B(0)",
+            "B ==> { int i = 0; } while (i < 2) (C(i) { i++; });",
+            "SC0C1",
+        ),
+    ]);
+}
+
+#[test]
+fn a_model_can_stop_growing() {
+    let text = "module A(int v); protected void init() [ Axiom ==> A(0); ]
+public void run() [ a:A ::> { a.v++; if (a.v == 3) { stop(); print(a.v); } } ]";
+    let model = Model::new(text).unwrap().grown(9).unwrap();
+    assert_eq!(model.printed(), "3");
+}
+
+#[test]
 fn the_lindenmayer_arrow_embeds() {
     check(&[
         // What leads to the first node leads to the first new one, what the last leads to hangs on the last new one.

@@ -524,12 +524,14 @@ pub enum Production {
     Separator,
     /// `for (x : seq) ( … )`
     ForEach(Option<Slot>, Sequence, Vec<Production>),
-    /// `for (;;) ( … )` and `while (c) ( … )`
+    /// `for (;;) ( … )`, `while (c) ( … )` and `do ( … ) while (c)`
     Loop {
         /// Runs once before.
         init: Vec<Stmt>,
         /// Tested before each turn.
         cond: Option<Expr>,
+        /// Whether the first turn is made without a test: `do ( … ) while (c)`.
+        is_first_free: bool,
         /// Runs after each turn.
         update: Vec<Expr>,
         /// Produced each turn.

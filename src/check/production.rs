@@ -34,12 +34,13 @@ impl Checker<'_> {
             RhsItem::Group(items, _) => Production::Group(self.productions(items)),
             RhsItem::Separator(_) => Production::Separator,
             RhsItem::For(head, body, span) => return self.rhs_for(head, body, *span),
-            RhsItem::While(cond, body, _) => {
+            RhsItem::While(cond, body, _) | RhsItem::DoWhile(body, cond, _) => {
                 let cond = self.condition_of(cond);
                 let body = self.loop_productions(body);
                 Production::Loop {
                     init: vec![],
                     cond: Some(cond?),
+                    is_first_free: matches!(item, RhsItem::DoWhile(..)),
                     update: vec![],
                     body,
                 }
@@ -225,6 +226,7 @@ impl Checker<'_> {
                 (cond.is_some() || !has_cond).then_some(Production::Loop {
                     init,
                     cond,
+                    is_first_free: false,
                     update,
                     body,
                 })

@@ -182,7 +182,7 @@ const FUNCTIONS: &[(&[&str], &str)] = &[
     (&["makeRendering"], "render with `understory render`"),
     (&["dataset", "data"], "write `new DatasetRef(\"name\")`"),
     (
-        &["run", "stop", "graph", "view", "closeWorkbench", "startup"],
+        &["run", "graph", "view", "closeWorkbench", "startup"],
         "there is no workbench here; call the method directly",
     ),
     (

@@ -41,6 +41,12 @@ pub trait ModelFiles: Send {
     /// # Errors
     /// If it may not, for one because its own sources stand there.
     fn may_write(&self, path: &str) -> Result<String, FileFault>;
+
+    /// The names of what a folder holds, sorted, hidden ones left out; `None` if there is no such folder.
+    ///
+    /// # Errors
+    /// If the model may not use it, or it cannot be read.
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, FileFault>;
 }
 
 /// No files at all.
@@ -70,6 +76,10 @@ impl ModelFiles for NoFiles {
     }
 
     fn may_write(&self, path: &str) -> Result<String, FileFault> {
+        Err(Self::refuse(path))
+    }
+
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, FileFault> {
         Err(Self::refuse(path))
     }
 }

@@ -87,6 +87,8 @@ pub struct Machine {
     pub derivation_mode: i32,
     /// Number of the step that runs, from 1; 0 is `init`.
     pub step: u64,
+    /// Whether the model has called `stop()`: no further step is made.
+    pub is_finished: bool,
     /// Whether rules that are templates are applied in bulk; the result is the same.
     pub uses_templates: bool,
     /// A step that could not be applied. The model goes on without it and fails when the entry method ends.
@@ -156,6 +158,7 @@ impl Machine {
             written: BTreeMap::new(),
             derivation_mode: DEFAULT_MODE,
             step: 0,
+            is_finished: false,
             uses_templates: true,
             failed_step: None,
             limits: setup.limits,

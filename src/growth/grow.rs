@@ -121,12 +121,16 @@ impl Growth {
         })
     }
 
-    /// Grows by one step: one call of the entry method, then everything queued is applied.
+    /// Grows by one step: one call of the entry method, then everything queued is applied. Nothing happens once the model
+    /// has called `stop()`.
     ///
     /// # Errors
     /// What went wrong at run time, or that there is no such method.
     pub fn step(&mut self) -> Result<(), Box<Diagnostic>> {
         let entry = self.entry()?;
+        if self.machine.is_finished {
+            return Ok(());
+        }
         let number = self.n_steps + 1;
         self.machine.step = number;
         self.run_deep(format!("in step {number}"), |program, machine| {

@@ -57,6 +57,7 @@ signatures! {
     RepaintView = ""."repaintView3D"() -> Void, Prints, "", "Nothing: there is no window.";
     DefaultView = "View3D"."getDefaultView"(Object graph) -> Class(ClassId::View3D), Pure, "", "A window that does nothing.";
     Gc = "System"."gc"() -> Void, Pure, "", "Nothing.";
+    Stop = ""."stop"() -> Void, Writes, "", "Ends the growth after this step.";
     Exit = "System"."exit"(Int code) -> Void, Writes, "", "Ends the run.";
     ArraysToString = "Arrays"."toString"(Object array) -> String, Pure, "", "The elements of an array as text.";
     ArraysSort = "Arrays"."sort"(Object array) -> Void, Writes, "", "Sorts an array.";

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, CharArray, Class, Double, Float, Int, Long, Node, Object, String, StringArray,
-    Text, Void,
+    Boolean, Char, CharArray, Class, Double, FileArray, Float, Int, Long, Node, Object, String,
+    StringArray, Text, Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
@@ -44,6 +44,7 @@ signatures! {
     StringReplaceChar = "String"."replace"(Char old, Char replacement) -> String, Pure, "", "With every occurrence replaced.";
     StringIsEmpty = "String"."isEmpty"() -> Boolean, Pure, "", "Whether its length is 0.";
     StringSplit = "String"."split"(String separator) -> StringArray, Pure, "", "Parts between occurrences of a separator.";
+    StringSplitLimit = "String"."split"(String separator, Int limit) -> StringArray, Pure, "", "At most so many parts; empty parts at the end are kept if the number is negative.";
     StringConcat = "String"."concat"(String text) -> String, Pure, "", "With a text appended.";
     StringToCharArray = "String"."toCharArray"() -> CharArray, Pure, "", "Its characters.";
 
@@ -194,7 +195,15 @@ signatures! {
     FileName = "File"."getName"() -> String, Pure, "", "The name without folders.";
     FilePath = "File"."getPath"() -> String, Pure, "", "The path.";
     FileAbsolutePath = "File"."getAbsolutePath"() -> String, Pure, "", "The path.";
-    FileExists = "File"."exists"() -> Boolean, Writes, "", "Whether it can be read.";
+    FileExists = "File"."exists"() -> Boolean, Writes, "", "Whether there is such a file or folder.";
+    FileIsDirectory = "File"."isDirectory"() -> Boolean, Writes, "", "Whether it is a folder.";
+    FileIsFile = "File"."isFile"() -> Boolean, Writes, "", "Whether it is a file.";
+    FileList = "File"."list"() -> StringArray, Writes, "", "Names of what the folder holds, sorted; null if it is no folder.";
+    FileListFiles = "File"."listFiles"() -> FileArray, Writes, "", "What the folder holds, sorted by name; null if it is no folder.";
+    FileParent = "File"."getParent"() -> String, Pure, "", "The path of the folder it stands in; null if none is named.";
+    FileMkdir = "File"."mkdir"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
+    FileMkdirs = "File"."mkdirs"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
+    FileCreate = "File"."createNewFile"() -> Boolean, Writes, "", "Whether it was not there yet; it is made when it is written.";
     ReaderReadLine = "Reader"."readLine"() -> String, Writes, "", "The next line, null at the end.";
     ReaderRead = "Reader"."read"() -> Int, Writes, "", "The next character, -1 at the end.";
     ReaderClose = "Reader"."close"() -> Void, Writes, "", "Ends reading.";

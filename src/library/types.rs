@@ -51,6 +51,7 @@ pub enum ValueType {
     CharArray,
     FloatArray,
     StringArray,
+    FileArray,
 }
 
 impl ValueType {
@@ -72,6 +73,7 @@ impl ValueType {
             Self::CharArray => array(Type::Char),
             Self::FloatArray => array(Type::Float),
             Self::StringArray => array(Type::String),
+            Self::FileArray => array(Type::Class(ClassId::File)),
         }
     }
 }

@@ -21,6 +21,7 @@ pub fn type_name(ty: ValueType) -> &'static str {
         ValueType::CharArray => "char[]",
         ValueType::FloatArray => "float[]",
         ValueType::StringArray => "String[]",
+        ValueType::FileArray => "File[]",
     }
 }
 

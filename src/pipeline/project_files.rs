@@ -11,6 +11,9 @@ use crate::eval::files::{FileFault, ModelFiles};
 /// Reads a file of the machine, from wherever the model runs.
 pub type ReadFile = Arc<dyn Fn(&Path) -> io::Result<Vec<u8>> + Send + Sync>;
 
+/// What a folder of the machine holds, from wherever the model runs; an error if it is none.
+pub type ListFolder = Arc<dyn Fn(&Path) -> io::Result<Vec<PathBuf>> + Send + Sync>;
+
 /// Where a path leads to, from wherever the model runs.
 pub type RealPath = Arc<dyn Fn(&Path) -> PathBuf + Send + Sync>;
 
@@ -59,6 +62,7 @@ pub struct ProjectFiles {
     root: PathBuf,
     access: Access,
     read: ReadFile,
+    list: ListFolder,
     real: RealPath,
 }
 
@@ -75,6 +79,7 @@ impl ProjectFiles {
             root: tidied(root),
             access: access.clone(),
             read: world.reader(),
+            list: world.lister(),
             real: world.real_paths(),
         }
     }
@@ -202,6 +207,26 @@ impl ModelFiles for ProjectFiles {
         }
         Ok(place.to_string_lossy().into_owned())
     }
+
+    fn list(&self, path: &str) -> Result<Option<Vec<String>>, FileFault> {
+        let place = self.resolve(path)?;
+        let found = match (self.list)(&place) {
+            Ok(found) => found,
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+                ) =>
+            {
+                return Ok(None);
+            }
+            Err(error) => return Err(FileFault::Failed(format!("{} ({error})", place.display()))),
+        };
+        let names = found.iter().filter_map(|path| path.file_name());
+        let names = names.map(|name| name.to_string_lossy().into_owned());
+        // What editors and version control leave behind is no data of the model.
+        Ok(Some(names.filter(|name| !name.starts_with('.')).collect()))
+    }
 }
 
 /// Writes what a model has written, each file whole or not at all.
@@ -257,6 +282,20 @@ mod tests {
         }
         let hint = refused(files.read("C:\\Users\\me\\x.csv"));
         assert!(hint.contains("--path-map 'C:/Users/me=FOLDER'"), "{hint}");
+    }
+
+    #[test]
+    fn folders_are_listed_by_name() {
+        let world = FakeWorld::default();
+        for file in ["m/a.rgg", "m/in/b.csv", "m/in/a.csv", "m/in/.hidden"] {
+            world.put(file, file);
+        }
+        let files = ProjectFiles::new(&world, Path::new("m"), &Access::default());
+        let names = files.list("in/").unwrap();
+        assert_eq!(names, Some(vec!["a.csv".to_owned(), "b.csv".to_owned()]));
+        assert_eq!(files.list("none").unwrap(), None);
+        assert_eq!(files.list("in/a.csv").unwrap(), None);
+        assert!(matches!(files.list(".."), Err(FileFault::Refused { .. })));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! All that a run needs of the machine: files, the clock, memory.
 
-use super::project_files::{ReadFile, RealPath};
+use super::project_files::{ListFolder, ReadFile, RealPath};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,6 +41,9 @@ pub trait World: Sync {
 
     /// Something that reads files as [`read`](Self::read) does and can be given away.
     fn reader(&self) -> ReadFile;
+
+    /// Something that lists folders as [`list`](Self::list) does and can be given away.
+    fn lister(&self) -> ListFolder;
 
     /// Something that finds where paths lead to after all symbolic links, whether or not anything is there.
     fn real_paths(&self) -> RealPath;
@@ -140,6 +143,10 @@ impl World for Machine {
 
     fn reader(&self) -> ReadFile {
         Arc::new(|path| Self::new().read(path))
+    }
+
+    fn lister(&self) -> ListFolder {
+        Arc::new(|path| Self::new().list(path))
     }
 
     fn real_paths(&self) -> RealPath {
@@ -243,7 +250,7 @@ pub(crate) mod fake {
     //! A machine that exists only in memory.
 
     use super::{Entry, World};
-    use crate::pipeline::project_files::{ReadFile, RealPath};
+    use crate::pipeline::project_files::{ListFolder, ReadFile, RealPath};
     use std::collections::BTreeMap;
     use std::io;
     use std::path::{Path, PathBuf};
@@ -300,6 +307,19 @@ pub(crate) mod fake {
                     .get(path)
                     .cloned()
                     .ok_or_else(|| io::ErrorKind::NotFound.into())
+            })
+        }
+
+        fn lister(&self) -> ListFolder {
+            let files = Arc::clone(&self.files);
+            Arc::new(move |folder| {
+                let files = files.lock().unwrap();
+                let inside = files.keys().filter(|file| file.parent() == Some(folder));
+                let found: Vec<PathBuf> = inside.cloned().collect();
+                if found.is_empty() {
+                    return Err(io::ErrorKind::NotFound.into());
+                }
+                Ok(found)
             })
         }
 

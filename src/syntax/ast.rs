@@ -607,6 +607,8 @@ pub enum RhsItem {
     For(Box<ForHead>, Vec<RhsItem>, Span),
     /// `while (c) (…)`
     While(Box<Expr>, Vec<RhsItem>, Span),
+    /// `do (…) while (c)`
+    DoWhile(Vec<RhsItem>, Box<Expr>, Span),
     /// `if (c) (…) else (…)`
     If(Box<Expr>, Vec<RhsItem>, Vec<RhsItem>, Span),
     /// `{ … }`: Java code.

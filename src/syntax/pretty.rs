@@ -461,6 +461,9 @@ fn rhs_items(items: &[RhsItem]) -> String {
         RhsItem::Separator(_) => ",".to_owned(),
         RhsItem::For(head, items, _) => format!("for ({}) ({})", for_head(head), rhs_items(items)),
         RhsItem::While(cond, items, _) => format!("while ({}) ({})", expr(cond), rhs_items(items)),
+        RhsItem::DoWhile(items, cond, _) => {
+            format!("do ({}) while ({})", rhs_items(items), expr(cond))
+        }
         RhsItem::If(cond, yes, no, _) => format!(
             "if ({}) ({}) else ({})",
             expr(cond),

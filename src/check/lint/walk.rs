@@ -141,6 +141,7 @@ fn productions(list: &[Production], visitor: &mut impl Visitor) {
                 cond,
                 update,
                 body,
+                ..
             } => {
                 stmts(init, visitor);
                 all(cond.iter().chain(update), visitor);

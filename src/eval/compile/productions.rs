@@ -60,9 +60,11 @@ impl Scope<'_> {
             Production::Loop {
                 init,
                 cond,
+                is_first_free,
                 update,
                 body,
             } => {
+                let is_first_free = *is_first_free;
                 let cond = cond.as_ref().map(|c| self.boolean(c));
                 let update: Vec<Eval<()>> =
                     update.iter().map(|e| self.effect(e).into_void()).collect();
@@ -70,8 +72,10 @@ impl Scope<'_> {
                 let (init, body) = (self.block(init), self.productions(body));
                 Box::new(move |p, m| {
                     init(p, m)?;
+                    let mut is_free = is_first_free;
                     loop {
                         if let Some(cond) = &cond
+                            && !std::mem::take(&mut is_free)
                             && !cond.get(p, m)?
                         {
                             return Ok(Flow::Next);

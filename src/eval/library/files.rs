@@ -2,6 +2,9 @@
 //! writes is kept whole until the run is over.
 
 use super::{Arguments, Context, new_object};
+use std::sync::{Arc, Mutex};
+
+use crate::eval::array::{Array, Elements};
 use crate::eval::files::FileFault;
 use crate::eval::memory::Charge;
 use crate::eval::object::Data;
@@ -12,7 +15,7 @@ use crate::library::ClassId;
 /// A text that is read line by line.
 #[derive(Clone, Debug)]
 pub struct TextReader {
-    text: std::sync::Arc<str>,
+    text: Arc<str>,
     at: usize,
     _charge: Charge,
 }
@@ -304,9 +307,87 @@ pub(super) fn path(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> 
 }
 
 pub(super) fn exists(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    match content(cx, &path_of(cx, args, 0)?) {
-        Ok(_) => Ok(Value::Boolean(true)),
-        Err(trap) if trap.thrown().is_some() => Ok(Value::Boolean(false)),
+    let path = path_of(cx, args, 0)?;
+    Ok(Value::Boolean(
+        is_readable(cx, &path)? || names_in(cx, &path)?.is_some(),
+    ))
+}
+
+pub(super) fn is_file(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(is_readable(cx, &path_of(cx, args, 0)?)?))
+}
+
+pub(super) fn is_folder(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let names = names_in(cx, &path_of(cx, args, 0)?)?;
+    Ok(Value::Boolean(names.is_some()))
+}
+
+/// Nothing has to be made before a file is written; whether the model may write there is said now.
+pub(super) fn make_folder(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let path = path_of(cx, args, 0)?;
+    cx.machine.files.place(&path).map_err(|f| fault(cx, f))?;
+    Ok(Value::Boolean(true))
+}
+
+pub(super) fn create(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let path = path_of(cx, args, 0)?;
+    let is_there = is_readable(cx, &path)?;
+    let files = &cx.machine.files;
+    files.may_write(&path).map_err(|f| fault(cx, f))?;
+    Ok(Value::Boolean(!is_there))
+}
+
+pub(super) fn parent(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let path = path_of(cx, args, 0)?;
+    let path = path.trim_end_matches(['/', '\\']);
+    match path.rfind(['/', '\\']) {
+        Some(at) => cx.new_text(&path[..at]),
+        None => Ok(Value::Null),
+    }
+}
+
+pub(super) fn list(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let names = names_in(cx, &path_of(cx, args, 0)?)?;
+    names.map_or(Ok(Value::Null), |names| {
+        array_of(cx, names.into_iter().map(Value::text))
+    })
+}
+
+pub(super) fn list_files(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let folder = path_of(cx, args, 0)?;
+    let Some(names) = names_in(cx, &folder)? else {
+        return Ok(Value::Null);
+    };
+    let folder = folder.trim_end_matches(['/', '\\']);
+    let files = names.into_iter().map(|name| {
+        let path = if folder.is_empty() {
+            name
+        } else {
+            format!("{folder}/{name}")
+        };
+        new_object(ClassId::File, Data::File(path))
+    });
+    array_of(cx, files)
+}
+
+/// What a folder holds; nothing that the model itself has written in this run.
+fn names_in(cx: &Context<'_>, path: &str) -> Result<Option<Vec<String>>, Trap> {
+    cx.machine.files.list(path).map_err(|f| fault(cx, f))
+}
+
+fn is_readable(cx: &Context<'_>, path: &str) -> Result<bool, Trap> {
+    match content(cx, path) {
+        Ok(_) => Ok(true),
+        Err(trap) if trap.thrown().is_some() => Ok(false),
         Err(trap) => Err(trap),
     }
+}
+
+/// An array of objects, with its share of the memory budget.
+fn array_of(cx: &Context<'_>, values: impl Iterator<Item = Value>) -> Result<Value, Trap> {
+    let elements: Box<[Mutex<Value>]> = values.map(Mutex::new).collect();
+    let charge = cx.machine.charge(64 * elements.len() as u64);
+    let charge = charge.map_err(|trap| trap.at(cx.span))?;
+    let array = Array::new(Elements::Reference(elements), charge);
+    Ok(Value::Array(Arc::new(array)))
 }

@@ -41,6 +41,7 @@ pub fn function(id: F) -> Behaviour {
             Native(system::nothing)
         }
         F::DefaultView => Native(system::view),
+        F::Stop => Native(system::stop),
         F::Exit => Native(system::exit),
         F::ArraysToString => Native(more::array_text),
         F::ArraysSort => Native(more::sort_array),

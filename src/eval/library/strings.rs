@@ -185,16 +185,32 @@ pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 /// Parts between occurrences of a plain separator (of the regular expressions only `\\s+`, `\\t`, `\\|`, `\\.` and their
 /// kin are known); empty parts at the end are dropped.
 pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    split_into(cx, args, 0)
+}
+
+/// As [`split`], into at most `limit` parts if that is above 0; empty parts at the end are kept unless it is 0.
+pub(super) fn split_limit(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    split_into(cx, args, args.int(2))
+}
+
+fn split_into(cx: &Context<'_>, args: &[Value], limit: i32) -> Result<Value, Trap> {
     let (text, separator) = (receiver(cx, args)?.as_str(), other(cx, args)?);
     let mut parts: Vec<&str> = match Separator::of(separator) {
         Some(Separator::Blanks) => split_at_blanks(text),
-        Some(Separator::Text(t)) if t.is_empty() => text.split_inclusive(|_| true).collect(),
+        Some(Separator::Text(t)) if t.is_empty() => {
+            text.split_inclusive(|_| true).chain([""]).collect()
+        }
         Some(Separator::Text(t)) => text.split(&*t).collect(),
         Some(Separator::Any(set)) => text.split(|c| set.contains(&c)).collect(),
         None => return Err(no_pattern(cx, separator)),
     };
-    while parts.len() > 1 && parts.last().is_some_and(|part| part.is_empty()) {
-        parts.pop();
+    if limit > 0 {
+        join_rest(text, &mut parts, limit.unsigned_abs() as usize);
+    }
+    // A text in which the separator does not occur is its own only part, even if it is empty.
+    if limit == 0 && parts.len() > 1 {
+        let end = parts.iter().rposition(|part| !part.is_empty());
+        parts.truncate(end.map_or(0, |last| last + 1));
     }
     let charge = cx
         .machine
@@ -210,7 +226,15 @@ pub(super) fn split(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
     ))))
 }
 
-/// A text that begins with blanks has an empty first part, as in Java.
+/// Leaves `n` parts of `text`, of which the last is all that follows the others.
+fn join_rest<'t>(text: &'t str, parts: &mut Vec<&'t str>, n: usize) {
+    if let Some(last) = parts.get(n - 1) {
+        let begin = last.as_ptr() as usize - text.as_ptr() as usize;
+        parts.truncate(n);
+        parts[n - 1] = &text[begin..];
+    }
+}
+
 /// What a text is split at: the few patterns that models use.
 enum Separator {
     Blanks,
@@ -305,9 +329,12 @@ pub(super) fn last_index_of_char(cx: &mut Context<'_>, args: &[Value]) -> Result
     Ok(place(receiver(cx, args)?.rfind(&wanted)))
 }
 
+/// A text that begins with blanks has an empty first part, as in Java; one that ends with blanks an empty last one.
 fn split_at_blanks(text: &str) -> Vec<&str> {
     let first = text.starts_with(char::is_whitespace).then_some("");
-    first.into_iter().chain(text.split_whitespace()).collect()
+    let last = text.ends_with(char::is_whitespace).then_some("");
+    let words = first.into_iter().chain(text.split_whitespace());
+    words.chain(last).collect()
 }
 
 pub(super) fn concat(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {

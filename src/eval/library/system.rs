@@ -37,6 +37,12 @@ pub(super) fn view(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     ))
 }
 
+/// `stop()`.
+pub(super) fn stop(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
+    cx.machine.is_finished = true;
+    Ok(Value::Null)
+}
+
 /// `System.exit(n)`.
 pub(super) fn exit(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let message = format!("the model ended the run by `System.exit({})`", args.int(0));

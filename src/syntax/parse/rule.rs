@@ -309,7 +309,7 @@ impl Reader<'_> {
         match pair.as_rule() {
             Rule::rhs_branch => RhsItem::Branch(self.rhs(pair), span),
             Rule::rhs_group => RhsItem::Group(self.rhs(pair), span),
-            Rule::rhs_for | Rule::rhs_while | Rule::rhs_if => self.rhs_choice(pair),
+            Rule::rhs_for | Rule::rhs_while | Rule::rhs_do | Rule::rhs_if => self.rhs_choice(pair),
             Rule::rhs_break => RhsItem::Break(span),
             Rule::separator => RhsItem::Separator(span),
             Rule::cut => RhsItem::Cut(span),
@@ -334,6 +334,7 @@ impl Reader<'_> {
         let cond = Box::new(cond.unwrap_or_else(|| Self::broken(span)));
         match which {
             Rule::rhs_while => RhsItem::While(cond, body, span),
+            Rule::rhs_do => RhsItem::DoWhile(body, cond, span),
             Rule::rhs_if => RhsItem::If(cond, body, bodies.next().unwrap_or_default(), span),
             _ => {
                 let head = head.unwrap_or_else(|| ForHead::Sequence(Self::broken(span)));
