@@ -8,6 +8,7 @@ use understory::geometry::Shape;
 use understory::growth::{Growth, GrowthOptions};
 use understory::interpret::{Interpretation, Limits, interpret};
 use understory::light::Light;
+use understory::turtle::Layers;
 use understory::scene::Scene;
 use understory::scene::description::PlacedShape;
 use understory::syntax::parse;
@@ -76,7 +77,7 @@ fn colours_shaders_and_setters() {
     let expected = [
         palette::ega(4),
         palette::ega(2),
-        Rgb::splat(0.5),
+        palette::ega(2),
         Rgb::new(0.25, 0.5, 0.75),
         Rgb::new(1.0, 0.0, 0.0),
         Rgb::new(0.0, 0.0, 1.0),
@@ -160,4 +161,137 @@ fn failures_name_the_organ_and_its_module() {
     assert_eq!(failure.slug, "body-depth");
     let nodes = growth.graph().n_nodes();
     assert!(nodes < 10, "{nodes} nodes: bodies left theirs behind");
+}
+
+/// Where shapes begin, along z.
+fn heights(drawn: &Interpretation) -> Vec<f64> {
+    let height = |shape: &PlacedShape| shape.to_group.translation.z;
+    shapes(drawn).iter().map(height).collect()
+}
+
+/// As GroIMP's visitor of scenes does it: the shader of a node holds for all that follows and has none.
+#[test]
+fn what_has_no_shader_looks_as_what_it_hangs_on() {
+    let drawn = draw(
+        "[Sphere(1) M(1) F(1, 1, 4) M(1) Sphere(1) [Box.(setShader(BLUE)) Sphere(1)] Null Sphere(1)]
+         [ShadedNull.(setShader(RED)) RU(30) Leaf [Leaf] F(1, 1, 2) Leaf]
+         [Parallelogram(1, 1).(setLight(new AreaLight())) Sphere(1)]",
+        "module Leaf ==> Sphere(2);",
+    );
+    let found: Vec<Rgb> = (0..12).map(|i| reflectance(&drawn, i)).collect();
+    let (blue, red, grey) = (
+        Rgb::new(0.0, 0.0, 1.0),
+        Rgb::new(1.0, 0.0, 0.0),
+        Rgb::splat(0.5),
+    );
+    let (four, two) = (palette::ega(4), palette::ega(2));
+    let expected = [
+        grey, four, four, blue, blue, four, red, red, two, two, grey, grey,
+    ];
+    assert_eq!(found, expected);
+}
+
+/// Axis.preTransform and postTransform of GroIMP: drawn from `startPosition * length` on, what follows stands at
+/// `endPosition * length`.
+#[test]
+fn axes_begin_and_end_where_the_model_says() {
+    let after = |axis: &str| heights(&draw(&format!("{axis} Sphere(0.1)"), ""));
+    assert_eq!(after("Cylinder(2, 1)"), [0.0, 2.0]);
+    assert_eq!(
+        after("Cylinder(2, 1).(setStartPosition(-0.5))"),
+        [-1.0, 2.0]
+    );
+    assert_eq!(after("Cone(2, 1).(setEndPosition(0.25))"), [0.0, 0.5]);
+    let both = "Parallelogram(4, 1).(setStartPosition(0.5), setEndPosition(0.75))";
+    assert_eq!(after(both), [2.0, 3.0]);
+    assert_eq!(
+        after("Box(2, 3, 5).(setShiftPivot(true))"),
+        [-1.5, 2.0],
+        "half the width, as in GroIMP"
+    );
+    assert_eq!(after("Box(2, true)"), [-0.5, 2.0]);
+    assert_eq!(
+        after("Frustum(2, 1, 1).(setTransforming(false))"),
+        [0.0, 0.0]
+    );
+    assert_eq!(
+        after("M(1) Null(0, 0, 5).(setTransforming(false)) Null(0, 0, 1)"),
+        [2.0]
+    );
+}
+
+#[test]
+fn locations_know_where_axes_begin_and_end() {
+    let text = "protected void init() [ Axiom ==> c:Cylinder(2, 1).(setStartPosition(-0.5), setEndPosition(3)) Sphere(1); ]
+        public void run() [ (* c:Cylinder *) Sphere ==> Sphere(10 * endlocation(c).z - location(c).z); ]";
+    let mut growth = grow(text);
+    growth.step().expect("it runs");
+    let drawn = interpret(&mut growth, Limits::default()).unwrap();
+    assert_eq!(heights(&drawn), [-1.0, 6.0]);
+    let Shape::Sphere { radius } = shapes(&drawn)[1].shape else {
+        panic!("a ball")
+    };
+    assert_eq!(radius, 61.0);
+}
+
+#[test]
+fn a_grid_of_copies() {
+    let drawn = draw(
+        "M(5) RU(90) GridClonerNode(2, 10, 3, 4) RV(1) [Ball] Ball",
+        "module Ball ==> Sphere(0.5);",
+    );
+    let root = &drawn.scene.groups[drawn.scene.root.unwrap().0 as usize];
+    assert_eq!((root.shapes.len(), root.instances.len()), (0, 6));
+    let moved: Vec<[f64; 3]> = root
+        .instances
+        .iter()
+        .map(|copy| copy.to_group.translation.to_array().map(f64::round))
+        .collect();
+    // Local x points down after RU(90), local y still north.
+    let expected = [
+        [0.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0],
+        [0.0, 8.0, 0.0],
+        [0.0, 0.0, -10.0],
+        [0.0, 4.0, -10.0],
+        [0.0, 8.0, -10.0],
+    ];
+    assert_eq!(moved, expected);
+    let group = &drawn.scene.groups[root.instances[0].group.0 as usize];
+    assert_eq!(group.shapes.len(), 2);
+    assert_eq!(drawn.summary.bounds.max.y, 8.5);
+    assert!(Scene::build(drawn.scene).is_ok());
+
+    let none = draw("GridClonerNode(0, 1, 5, 1) Sphere(1)", "");
+    let root = &none.scene.groups[none.scene.root.unwrap().0 as usize];
+    assert!(root.instances.is_empty());
+    let nested = "GridClonerNode(1, 1, 1, 1) ".repeat(100);
+    let text = format!("protected void init() [ Axiom ==> {nested} Sphere(1); ]");
+    let failure = interpret(&mut grow(&text), Limits::default()).unwrap_err();
+    assert_eq!(failure.slug, "instance-depth");
+}
+
+#[test]
+fn hidden_layers_are_not_drawn_and_do_not_shine() {
+    let rules =
+        "[Sphere(1)] [Sphere(2).(setLayer(5)) M(1) Sphere(3)] [Helper] [Sphere(4).(setLayer(99))]
+         [LightNode.(setLayer(15), setLight(new PointLight()))]";
+    let modules =
+        "module Helper extends Box(1, 1, 1) { { layer = 5; } } ==> Sphere(5).(setLayer(15));";
+    let text = format!("{modules}\nprotected void init() [ Axiom ==> M(0) {rules}; ]");
+    let counts = |hidden: &[i32]| {
+        let layers = hidden.iter().fold(Layers::default(), |all, n| all.with(*n));
+        let limits = Limits {
+            hidden: layers,
+            ..Limits::default()
+        };
+        let drawn = interpret(&mut grow(&text), limits).unwrap();
+        (shapes(&drawn).len(), drawn.scene.lights.len())
+    };
+    assert_eq!(counts(&[]), (6, 1), "as in GroIMP all are shown at first");
+    assert_eq!(counts(&[5]), (4, 1));
+    assert_eq!(counts(&[15]), (5, 0));
+    assert_eq!(counts(&[0]), (4, 1));
+    let drawn = draw("[Sphere(2).(setLayer(5)) M(1) Sphere(3)]", "");
+    assert_eq!(heights(&drawn), [0.0, 1.0]);
 }

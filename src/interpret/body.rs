@@ -41,6 +41,8 @@ enum Prototype {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sharing {
     is_over: bool,
+    /// Whether such bodies take their look from outside, so that the look belongs to the key.
+    wears_given_look: bool,
     drawn: u32,
     placed: u32,
 }
@@ -92,14 +94,22 @@ impl<S: Source> Painter<'_, S> {
         inside: Place,
     ) -> Result<(), Failure> {
         if let Some(known) = self.prototypes.by_key.get(&*self.prototypes.key).copied() {
-            self.prototypes.sharing(ty).placed += 1;
+            let sharing = self.prototypes.sharing(ty);
+            sharing.placed += 1;
+            if sharing.wears_given_look {
+                self.canvas.note_look(state.look);
+            }
             return self.place_prototype(known, node, state, inside);
         }
-        let key: Box<[u64]> = self.prototypes.key.as_slice().into();
         let made = self.run_body(node)?;
-        let outer = std::mem::take(&mut self.canvas);
+        let fresh = Canvas::beginning_with(state.look);
+        let outer = std::mem::replace(&mut self.canvas, fresh);
         let mut drawn = self.draw_made(&made, &state.at_origin(), inside);
         let canvas = std::mem::replace(&mut self.canvas, outer);
+        if canvas.wears_given_look {
+            self.prototypes.sharing(ty).wears_given_look = true;
+            self.canvas.note_look(state.look);
+        }
         if canvas.is_bound && drawn.is_ok() {
             // It looks different wherever it stands: draw it here, and the others of its type where they are.
             self.prototypes.sharing(ty).is_over = true;
@@ -109,6 +119,9 @@ impl<S: Source> Painter<'_, S> {
         }
         self.source.release(made);
         drawn?;
+        // Drawing may have asked for other keys, and now the look may belong to this one.
+        self.find_key(node, ty, state);
+        let key: Box<[u64]> = self.prototypes.key.as_slice().into();
         let known = self.keep_prototype(canvas, key, ty);
         self.place_prototype(known, node, state, inside)
     }
@@ -188,6 +201,10 @@ impl<S: Source> Painter<'_, S> {
             key.push(bits);
         }
         key.extend(state.registers.key().map(u64::from));
+        if self.prototypes.sharing(ty).wears_given_look {
+            let look = self.look_number(state.look);
+            self.prototypes.key.push(look);
+        }
         true
     }
 
@@ -210,8 +227,11 @@ impl<S: Source> Painter<'_, S> {
             if is_branch {
                 state.enter_branch();
             }
-            self.draw_node(head, &mut state, place)?;
-            self.draw_below(head, state, place)
+            if self.draw_node(head, &mut state, place)? {
+                self.draw_below(head, state, place)
+            } else {
+                Ok(())
+            }
         })
     }
 }

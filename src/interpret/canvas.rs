@@ -5,6 +5,7 @@ use super::shapes::bounds;
 use crate::light::Light;
 use crate::math::Bounds3;
 use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape};
+use crate::turtle::Look;
 use glam::DAffine3;
 
 /// A group while it is drawn.
@@ -16,6 +17,10 @@ pub(super) struct Canvas {
     pub(super) about: About,
     /// Whether something in it depends on where and how it is placed, so that it cannot be drawn again elsewhere.
     pub(super) is_bound: bool,
+    /// How the turtle looked where this began.
+    pub(super) given_look: Look,
+    /// Whether something in it may look so, so that it looks otherwise where the turtle does.
+    pub(super) wears_given_look: bool,
 }
 
 /// What is known of a group without looking at its shapes.
@@ -42,6 +47,8 @@ impl Default for Canvas {
                 lights: Vec::new(),
             },
             is_bound: false,
+            given_look: Look::Grey,
+            wears_given_look: false,
         }
     }
 }
@@ -52,6 +59,19 @@ impl Canvas {
         self.group.shapes.is_empty()
             && self.group.instances.is_empty()
             && self.about.lights.is_empty()
+    }
+
+    /// An empty one for what begins where the turtle looks so.
+    pub(super) fn beginning_with(given_look: Look) -> Self {
+        Self {
+            given_look,
+            ..Self::default()
+        }
+    }
+
+    /// Notes that something was drawn that has no look of its own.
+    pub(super) fn note_look(&mut self, look: Look) {
+        self.wears_given_look |= look == self.given_look;
     }
 
     /// Adds a shape.

@@ -3,6 +3,7 @@
 //! The subgraph is drawn once, in the frame its node's children start from, as a group. Gravity and tropisms act in that
 //! frame, lamps are placed with each instance, and surfaces that shine keep their radiance whatever the scale.
 
+use super::canvas::Canvas;
 use super::failure::{self, Failure};
 use super::shapes::FIELDS;
 use super::source::Source;
@@ -20,7 +21,7 @@ const MAX_NESTING: usize = 16;
 pub(super) struct Instances {
     /// Looked up only, never iterated.
     by_node: HashMap<NodeId, Subgraph>,
-    nesting: usize,
+    pub(super) nesting: usize,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,12 +66,7 @@ impl<S: Source> Painter<'_, S> {
             Some(known) => return Ok(*known),
             None => {}
         }
-        if self.instances.nesting >= MAX_NESTING {
-            return Err(failure::instances_too_deep(
-                MAX_NESTING,
-                self.span(node, place),
-            ));
-        }
+        self.check_nesting(node, place)?;
         let Ok(start) = self.poses.after(self.source.graph(), target) else {
             return Err(failure::instance_of_nothing(self.span(node, place)));
         };
@@ -80,7 +76,8 @@ impl<S: Source> Painter<'_, S> {
             owner: None,
             depth: place.depth,
         };
-        let outer = std::mem::take(&mut self.canvas);
+        let fresh = Canvas::beginning_with(start.look);
+        let outer = std::mem::replace(&mut self.canvas, fresh);
         let drawn = self.draw_below(target, start.at_origin(), below);
         let canvas = std::mem::replace(&mut self.canvas, outer);
         self.instances.nesting -= 1;
@@ -92,5 +89,14 @@ impl<S: Source> Painter<'_, S> {
         };
         self.instances.by_node.insert(target, found);
         Ok(found)
+    }
+
+    /// Refuses a further group within groups if there are too many already.
+    pub(super) fn check_nesting(&self, node: NodeId, place: Place) -> Result<(), Failure> {
+        if self.instances.nesting < MAX_NESTING {
+            return Ok(());
+        }
+        let span = self.span(node, place);
+        Err(failure::instances_too_deep(MAX_NESTING, span))
     }
 }

@@ -7,6 +7,7 @@
 //!   walk        the turtle's way through the graph, without recursion
 //!   body        instantiation bodies and their prototypes
 //!   instance    `Instance(node)`: groups drawn again
+//!   grid        `GridClonerNode`: groups drawn in a grid
 //!   shapes      one node → one shape
 //!   meshes      meshes from files
 //!   surfaces    shader, colour or lamp of a node
@@ -24,6 +25,7 @@ mod blame;
 mod body;
 mod canvas;
 mod failure;
+mod grid;
 mod grown;
 mod instance;
 mod lamps;
@@ -42,9 +44,10 @@ pub use source::{Body, Source};
 
 use crate::diag::Diagnostics;
 use crate::math::Bounds3;
+use crate::options::Layers;
 use crate::scene::description::SceneDescription;
 
-/// What drawing may cost.
+/// What drawing may cost, and what is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Bytes that shapes and instances may take.
@@ -53,6 +56,8 @@ pub struct Limits {
     pub body_depth: usize,
     /// Nodes that all bodies together may make.
     pub body_nodes: u64,
+    /// Layers that are not drawn.
+    pub hidden: Layers,
 }
 
 impl Default for Limits {
@@ -62,6 +67,7 @@ impl Default for Limits {
             memory: 4 << 30,
             body_depth: 200,
             body_nodes: 1 << 30,
+            hidden: Layers::default(),
         }
     }
 }

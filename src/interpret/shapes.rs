@@ -31,6 +31,12 @@ pub(super) struct Fields {
     pub(super) mesh_file: FieldId,
     /// What an instance draws again.
     pub(super) prototype: FieldId,
+    /// The layer of a node.
+    pub(super) layer: FieldId,
+    /// Numbers of copies along x and y of a grid.
+    pub(super) counts: [FieldId; 2],
+    /// Their distances.
+    pub(super) distances: [FieldId; 2],
 }
 
 pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
@@ -55,6 +61,9 @@ pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
         shader: field("ShadedNull", "shader"),
         mesh_file: field("Mesh", "file"),
         prototype: field("Instance", "prototype"),
+        layer: field("Node", "layer"),
+        counts: ["xCount", "yCount"].map(|f| field("GridClonerNode", f)),
+        distances: ["xDistance", "yDistance"].map(|f| field("GridClonerNode", f)),
     }
 });
 

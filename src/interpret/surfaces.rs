@@ -10,16 +10,16 @@ use crate::color::Rgb;
 use crate::geometry::Shape;
 use crate::graph::NodeId;
 use crate::scene::description::MaterialId;
-use crate::turtle::TurtleState;
 use crate::turtle::effect::{Effect, Primitive};
 use crate::turtle::reading::shoot_color;
+use crate::turtle::{Look, TurtleState};
 use glam::DAffine3;
 
 const IMPOSSIBLE_LAMP: &str =
     "has a lamp whose power or colour is negative or no number; it does not shine";
 
 impl<S: Source> Painter<'_, S> {
-    /// The material a node's shape is drawn with: its shader, else a shoot's colour, else grey.
+    /// The material a node's shape is drawn with: that of the shader or colour the turtle wears, else grey.
     pub(super) fn material_of(
         &mut self,
         node: NodeId,
@@ -29,7 +29,12 @@ impl<S: Source> Painter<'_, S> {
         to_group: &DAffine3,
     ) -> MaterialId {
         let graph = self.source.graph();
-        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
+        let (dressed, index) = match state.look {
+            Look::Of(dressed) => (dressed, shoot_color(graph, node, state)),
+            Look::Ega(index) => (node, Some(index)),
+            Look::Grey => (node, None),
+        };
+        let shader = graph.peek_object(dressed, FIELDS.shader).ok().flatten();
         let surface = shader.and_then(Appearance::surface);
         let lamp = match does {
             Effect::Draw(Primitive::Parallelogram) => {
@@ -38,16 +43,17 @@ impl<S: Source> Painter<'_, S> {
             }
             _ => None,
         };
-        let index = shoot_color(graph, node, state);
         if let Some(lamp) = lamp {
             return self.shining_material(node, &lamp, surface, shape, to_group);
         }
-        if let Some(material) = self.shader_material(node) {
-            return material;
-        }
-        match index {
-            Some(index) => self.materials.ega(index),
-            None => self.materials.grey(),
+        let dressed = match state.look {
+            Look::Of(dressed) => self.shader_material(dressed),
+            Look::Ega(_) | Look::Grey => None,
+        };
+        match (dressed, index) {
+            (Some(material), _) => material,
+            (None, Some(index)) => self.materials.ega(index),
+            (None, None) => self.materials.grey(),
         }
     }
 
@@ -61,6 +67,16 @@ impl<S: Source> Painter<'_, S> {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
         }
         Some(material)
+    }
+
+    /// A number that is equal for looks that give the same material.
+    pub(super) fn look_number(&mut self, look: Look) -> u64 {
+        let material = match look {
+            Look::Grey => None,
+            Look::Ega(index) => Some(self.materials.ega(index)),
+            Look::Of(node) => self.shader_material(node),
+        };
+        u64::from(material.unwrap_or_else(|| self.materials.grey()).0)
     }
 
     /// The material of a parallelogram with a lamp of its own. A lamp without a shader shines white.

@@ -7,7 +7,7 @@ use super::instance::Instances;
 use super::materials::Materials;
 use super::meshes::MeshFiles;
 use super::organs::Organs;
-use super::shapes::{is_finite, shape_of};
+use super::shapes::{FIELDS, is_finite, shape_of};
 use super::source::{Body, Source};
 use super::{Interpretation, Limits, Summary};
 use crate::color::Rgb;
@@ -17,7 +17,7 @@ use crate::light::{Environment, Light, Sky};
 use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape, SceneDescription};
 use crate::turtle::effect::{Effect, Primitive};
 use crate::turtle::pose::{apply_own_transform, follow};
-use crate::turtle::reading::{action, effect};
+use crate::turtle::reading::{action, dress, effect, is_transforming};
 use crate::turtle::{Poses, TurtleState};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeSet;
@@ -55,8 +55,6 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
     pub(super) mesh_files: MeshFiles,
-    /// The type of nodes that GroIMP draws in a grid of copies.
-    cloner: Option<TypeId>,
     n_nodes: u64,
     body_nodes: u64,
     /// Emptied, to be used again.
@@ -78,7 +76,6 @@ impl<'s, S: Source> Painter<'s, S> {
         let spans = types.iter().map(|(ty, _)| source.declared_at(ty)).collect();
         let made = types.iter().map(|(ty, _)| source.made_at(ty).to_vec());
         let made = made.collect();
-        let cloner = types.find("GridClonerNode");
         Self {
             source,
             limits,
@@ -89,7 +86,6 @@ impl<'s, S: Source> Painter<'s, S> {
             prototypes: Prototypes::default(),
             instances: Instances::default(),
             mesh_files: MeshFiles::default(),
-            cloner,
             n_nodes: 0,
             body_nodes: 0,
             spare_ways: Vec::new(),
@@ -171,9 +167,12 @@ impl<'s, S: Source> Painter<'s, S> {
     ) -> Result<(), Failure> {
         let Way { pending, forks } = way;
         let (mut node, mut state) = (start, state);
+        let mut goes_on = true;
         loop {
             let floor = pending.len();
-            self.push_children(node, pending);
+            if goes_on {
+                self.push_children(node, pending);
+            }
             let n_children = pending.len() - floor;
             if n_children > 1 {
                 forks.push((floor, state));
@@ -191,7 +190,7 @@ impl<'s, S: Source> Painter<'s, S> {
                 }
             }
             follow(&mut state, bits);
-            self.draw_node(child, &mut state, place)?;
+            goes_on = self.draw_node(child, &mut state, place)?;
             node = child;
         }
     }
@@ -212,13 +211,13 @@ impl<'s, S: Source> Painter<'s, S> {
         pending[floor..].reverse();
     }
 
-    /// Draws one node and turns `state` into the one its children start from.
+    /// Draws one node and turns `state` into the one its children start from. Whether they are still to be drawn.
     pub(super) fn draw_node(
         &mut self,
         node: NodeId,
         state: &mut TurtleState,
         place: Place,
-    ) -> Result<(), Failure> {
+    ) -> Result<bool, Failure> {
         self.n_nodes += 1;
         if self.n_nodes.is_multiple_of(CHECK_EVERY) && self.source.is_stopped() {
             return Err(failure::stopped());
@@ -228,30 +227,59 @@ impl<'s, S: Source> Painter<'s, S> {
         }
         let graph = self.source.graph();
         let does = effect(graph, node);
+        let before = state.transform;
         apply_own_transform(graph, node, state);
-        match does {
-            Effect::Step { is_shoot: true, .. } => self.draw_shape(node, does, state, place)?,
-            Effect::Draw(Primitive::Light) => self.draw_light_node(node, state)?,
-            Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place)?,
-            Effect::Draw(_) => self.draw_shape(node, does, state, place)?,
-            Effect::Instance => self.draw_instance(node, state, place)?,
-            Effect::Group if self.cloner.is_some() && self.cloner == graph.type_of(node).ok() => {
-                self.warn(
-                    node,
-                    "not-cloned",
-                    "is drawn once: grids of copies are not made",
-                );
-            }
-            _ => self.canvas.is_bound |= depends_on_world(does),
+        let has_own_look = dress(graph, node, state);
+        self.canvas.is_bound |= depends_on_world(does);
+        if self.is_shown(node) {
+            self.draw_own(node, does, state, has_own_look, place)?;
         }
         let graph = self.source.graph();
         let poses = &mut self.poses;
         let moves = action(graph, node, &mut |to| poses.location(graph, to).ok());
         state.execute(&moves);
-        let Some(body) = self.body_of(node) else {
-            return Ok(());
-        };
-        self.draw_body(node, body, state, place)
+        if !is_transforming(graph, node) {
+            state.transform = before;
+        }
+        let body = self.body_of(node);
+        if does == Effect::Grid {
+            self.draw_grid(node, body, state, place)?;
+            return Ok(false);
+        }
+        if let Some(body) = body {
+            self.draw_body(node, body, state, place)?;
+        }
+        Ok(true)
+    }
+
+    /// Whether a node is in no hidden layer.
+    fn is_shown(&self, node: NodeId) -> bool {
+        let hidden = self.limits.hidden;
+        let layer = || self.source.graph().get_i32(node, FIELDS.layer).unwrap_or(0);
+        hidden.is_empty() || !hidden.contains(layer())
+    }
+
+    /// Draws what a node itself is, without what follows it and without its body.
+    fn draw_own(
+        &mut self,
+        node: NodeId,
+        does: Effect,
+        state: &TurtleState,
+        has_own_look: bool,
+        place: Place,
+    ) -> Result<(), Failure> {
+        match does {
+            Effect::Draw(Primitive::Light) => self.draw_light_node(node, state),
+            Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place),
+            Effect::Step { is_shoot: true, .. } | Effect::Draw(_) => {
+                if !has_own_look {
+                    self.canvas.note_look(state.look);
+                }
+                self.draw_shape(node, does, state, place)
+            }
+            Effect::Instance => self.draw_instance(node, state, place),
+            _ => Ok(()),
+        }
     }
 
     fn count_body_node(&mut self, node: NodeId, place: Place) -> Result<(), Failure> {

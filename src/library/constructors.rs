@@ -24,9 +24,9 @@ signatures! {
     Phong = "Phong"."new"() -> Void, Pure, "", "Half gray, matt.";
     PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";
     SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
-    DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 1 W/m².";
+    DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 10 W/m².";
     AreaLight = "AreaLight"."new"() -> Void, Pure, "", "White, 100 W.";
-    Sky = "Sky"."new"() -> Void, Pure, "", "White, 1 W/m².";
+    Sky = "Sky"."new"() -> Void, Pure, "", "White, 50 W/m².";
     LightModel = "LightModel"."new"() -> Void, Pure, "", "Default numbers of rays and reflections.";
     LightModelOf = "LightModel"."new"(Int rays, Int depth) -> Void, Pure, "", "From numbers of rays and of reflections.";
     Random = "Random"."new"() -> Void, Random, "", "Seeded from the model's generator.";

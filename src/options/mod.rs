@@ -16,6 +16,7 @@
 //! ```
 
 pub mod explain;
+pub mod layers;
 pub mod preset;
 pub mod setting;
 pub mod sidecar;
@@ -23,5 +24,6 @@ pub mod surroundings;
 pub mod table;
 pub mod value;
 
+pub use layers::Layers;
 pub use setting::{Origin, SetError, Setting};
 pub use table::{Command, OptionRow, Options, Section, Stage, TABLE};

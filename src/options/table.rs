@@ -1,5 +1,6 @@
 //! The table of options: one row each.
 
+use super::layers::Layers;
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::SkyKind;
 use super::value::{
@@ -224,6 +225,9 @@ options! {
     time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture
     exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, PICTURING;
+
+    /// Layers (`setLayer`) whose nodes are neither drawn nor shine; `none`
+    hide_layers: Layers = "none", "hide-layers", "N,N", Render, Scene, PICTURING;
 
     /// Daylight with the sun at this azimuth (from north over east) and elevation, in degrees; `auto`: only for a model without light; `none`
     sun: Daylight = "auto", "sun", "AZ,EL", Sky, Scene, PICTURING;

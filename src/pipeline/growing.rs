@@ -208,6 +208,7 @@ pub fn draw(
     let limits = interpret::Limits {
         memory,
         body_nodes: run.options.max_modules.value.get(),
+        hidden: run.options.hide_layers.value,
         ..interpret::Limits::default()
     };
     match growth.drawing(|growth| interpret::interpret(growth, limits)) {

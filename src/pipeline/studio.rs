@@ -78,6 +78,12 @@ impl Run {
             .with(&self.options.fingerprint(Stage::Growth))
     }
 
+    /// Equal for runs whose drawn models are the same.
+    fn drawing_key(&self) -> ContentHash {
+        self.growth_key()
+            .with(&self.options.hide_layers.value.to_string())
+    }
+
     /// Equal for runs with the same scene.
     pub fn scene_key(&self) -> ContentHash {
         self.growth_key()
@@ -278,7 +284,7 @@ impl<'w> Studio<'w> {
     /// Grows the model and turns it into geometry. The graph is given back at once: it is large, and what light needs of
     /// it is in the geometry.
     fn draw(&mut self, run: &Run, cancel: &CancelToken) -> Result<Drawn, Failure> {
-        let key = run.growth_key();
+        let key = run.drawing_key();
         if let Some((known, drawn)) = &self.drawn
             && *known == key
         {

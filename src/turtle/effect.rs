@@ -152,4 +152,6 @@ pub enum Effect {
     Draw(Primitive),
     /// Draws again what hangs below another node.
     Instance,
+    /// As [`Effect::Group`], and what follows is drawn in a grid of `xCount` times `yCount` copies.
+    Grid,
 }

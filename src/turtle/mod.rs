@@ -17,7 +17,7 @@ use std::sync::LazyLock;
 pub use effect::Effect;
 pub use motion::Action;
 pub use pose::Poses;
-pub use state::{Registers, TurtleState};
+pub use state::{Look, Registers, TurtleState};
 pub use table::{BuiltinField, BuiltinType, FieldType, builtin_types};
 
 /// A table that holds the built-in types; modules of a model are added to it.

@@ -4,7 +4,7 @@
 //! state is known and comes back down. One state in eight on the way is kept, so asking for all nodes of a chain
 //! costs eight steps each at most, and memory stays far below that of the graph.
 
-use super::reading::{action, own_transform};
+use super::reading::{action, dress, is_transforming, own_transform};
 use super::state::TurtleState;
 use crate::graph::{EdgeBits, Graph, GraphError, NodeId, Payload};
 use glam::DVec3;
@@ -139,9 +139,14 @@ impl Poses {
         // Down again.
         for (i, &(node, bits)) in way.iter().rev().enumerate() {
             follow(&mut state, bits);
+            let before = state.transform;
             apply_own_transform(graph, node, &mut state);
+            dress(graph, node, &mut state);
             let does = action(graph, node, &mut |target| self.locate(graph, target));
             state.execute(&does);
+            if !is_transforming(graph, node) {
+                state.transform = before;
+            }
             if (i + 1).is_multiple_of(STRIDE) {
                 self.keep(node, &state);
             }

@@ -2,7 +2,7 @@
 
 use super::effect::{Change, Effect, StepLength, Target};
 use super::motion::Action;
-use super::state::TurtleState;
+use super::state::{Look, TurtleState};
 use super::{builtin_types, types};
 use crate::graph::{FieldId, Graph, NodeId, Payload, TypeTable};
 use glam::{DAffine3, DVec3};
@@ -15,8 +15,16 @@ struct Reader {
     fields: [FieldId; 4],
     /// `transform`, and the parts of a translation, for types that have them.
     transform: Option<[FieldId; 4]>,
+    /// `length`, `startPosition` and `endPosition` of the primitives along the head.
+    axis: Option<[FieldId; 3]>,
+    /// `shiftPivot` and `width` of a box.
+    pivot: Option<[FieldId; 2]>,
     /// A shoot's own `diameter` and `color`.
     shoot: Option<[FieldId; 2]>,
+    /// `shader` of what has a surface.
+    shader: Option<FieldId>,
+    /// `transforming` of what has a transformation.
+    transforming: Option<FieldId>,
 }
 
 static READERS: LazyLock<Vec<Reader>> = LazyLock::new(|| {
@@ -32,15 +40,25 @@ fn reader(table: &TypeTable, type_name: &str, effect: Effect) -> Reader {
     for (slot, name) in fields.iter_mut().zip(fields_of(effect)) {
         *slot = field(name).expect("invariant: the table gives each effect its fields");
     }
-    let all = |names: [&str; 4]| -> Option<[FieldId; 4]> {
+    fn all<const N: usize>(
+        field: impl Fn(&str) -> Option<FieldId>,
+        names: [&str; N],
+    ) -> Option<[FieldId; N]> {
         let found: Option<Vec<FieldId>> = names.iter().map(|name| field(name)).collect();
         found?.try_into().ok()
-    };
+    }
     Reader {
         effect,
         fields,
-        transform: all(["transform", "transform.x", "transform.y", "transform.z"]),
+        transform: all(
+            field,
+            ["transform", "transform.x", "transform.y", "transform.z"],
+        ),
+        axis: all(field, ["length", "startPosition", "endPosition"]),
+        pivot: all(field, ["shiftPivot", "width"]),
         shoot: field("diameter").zip(field("color")).map(|(d, c)| [d, c]),
+        shader: field("shader"),
+        transforming: field("transforming"),
     }
 }
 
@@ -64,7 +82,6 @@ fn fields_of(effect: Effect) -> &'static [&'static str] {
         Effect::Translate => &["translateX", "translateY", "translateZ"],
         Effect::Rotate => &["rotateX", "rotateY", "rotateZ"],
         Effect::Scale => &["scaleX", "scaleY", "scaleZ", "scale"],
-        Effect::Draw(primitive) if primitive.moves() => &["length"],
         Effect::Step {
             length: StepLength::Register,
             ..
@@ -76,7 +93,8 @@ fn fields_of(effect: Effect) -> &'static [&'static str] {
         | Effect::RegisterGravitropism
         | Effect::Group
         | Effect::Draw(_)
-        | Effect::Instance => &[],
+        | Effect::Instance
+        | Effect::Grid => &[],
     }
 }
 
@@ -90,19 +108,79 @@ pub fn effect<O: Payload>(graph: &Graph<O>, node: NodeId) -> Effect {
     reader_of(graph, node).map_or(Effect::None, |reader| reader.effect)
 }
 
-/// The transformation a node applies before it is drawn (`setTransform`, `Null(x, y, z)`), where it has one.
+/// The transformation a node applies before it is drawn (`setTransform`, `Null(x, y, z)`, `setStartPosition`), where it
+/// has one.
 pub fn own_transform<O: Payload>(graph: &Graph<O>, node: NodeId) -> Option<DAffine3> {
-    let [whole, x, y, z] = reader_of(graph, node)?.transform?;
-    if ![whole, x, y, z].iter().any(|f| graph.has_side(node, *f)) {
+    let reader = reader_of(graph, node)?;
+    let [whole, x, y, z] = reader.transform?;
+    let shift = axis_shift(graph, node, reader);
+    if shift == 0.0 && ![whole, x, y, z].iter().any(|f| graph.has_side(node, *f)) {
         return None;
     }
     let part = |field| graph.get_f64(node, field).unwrap_or(0.0);
     let offset = DAffine3::from_translation(DVec3::new(part(x), part(y), part(z)));
+    let along = DAffine3::from_translation(DVec3::Z * f64::from(shift));
     let whole = graph.peek_object(node, whole).ok().flatten();
     Some(match whole.and_then(Payload::as_transform) {
-        Some(whole) => offset * whole,
-        None => offset,
+        Some(whole) => offset * whole * along,
+        None => offset * along,
     })
+}
+
+/// Whether what follows a node inherits its frame; if not (`setTransforming(false)`), it begins where the node began.
+pub fn is_transforming<O: Payload>(graph: &Graph<O>, node: NodeId) -> bool {
+    let field = reader_of(graph, node).and_then(|reader| reader.transforming);
+    field.is_none_or(|field| graph.get_bool(node, field).unwrap_or(true))
+}
+
+/// Lets the turtle look as a node makes it look: by its shader, or by a shoot's colour. Whether the node has a say in it.
+pub fn dress<O: Payload>(graph: &Graph<O>, node: NodeId, state: &mut TurtleState) -> bool {
+    let Some(reader) = reader_of(graph, node) else {
+        return false;
+    };
+    let shader = reader.shader.filter(|field| graph.has_side(node, *field));
+    let shader = shader.and_then(|field| graph.peek_object(node, field).ok().flatten());
+    let look = if shader.is_some() {
+        Some(Look::Of(node))
+    } else {
+        shoot_color(graph, node, state).map(Look::Ega)
+    };
+    state.look = look.unwrap_or(state.look);
+    look.is_some()
+}
+
+/// How far along its head a primitive is drawn from where the turtle stands (`setStartPosition`, `setShiftPivot`).
+fn axis_shift<O: Payload>(graph: &Graph<O>, node: NodeId, reader: &Reader) -> f32 {
+    let Some([length, start, _]) = reader.axis else {
+        return 0.0;
+    };
+    let single = |field| graph.get_f32(node, field).unwrap_or(0.0);
+    let start = if graph.has_side(node, start) {
+        single(start) * single(length)
+    } else {
+        0.0
+    };
+    start - pivot_shift(graph, node, reader)
+}
+
+/// How far `setShiftPivot` moves a box back: half its width, whatever its length, as in GroIMP.
+fn pivot_shift<O: Payload>(graph: &Graph<O>, node: NodeId, reader: &Reader) -> f32 {
+    match reader.pivot {
+        Some([is_shifted, width]) if graph.get_bool(node, is_shifted).unwrap_or(false) => {
+            0.5 * graph.get_f32(node, width).unwrap_or(0.0)
+        }
+        _ => 0.0,
+    }
+}
+
+/// How far the turtle walks from where a primitive is drawn: to `endPosition` of its length.
+fn axis_walk<O: Payload>(graph: &Graph<O>, node: NodeId, reader: &Reader) -> f32 {
+    let Some([length, start, end]) = reader.axis else {
+        return 0.0;
+    };
+    let single = |field| graph.get_f32(node, field).unwrap_or(0.0);
+    let share = single(end) - single(start);
+    share * single(length) + pivot_shift(graph, node, reader)
 }
 
 /// What a node does to the turtle on the way to its children. `locate` tells where another node is, for `RN`.
@@ -120,7 +198,7 @@ pub fn action<O: Payload>(
     let object = || graph.peek_object(node, reader.fields[0]).ok().flatten();
     let vector = || object().and_then(Payload::as_vector);
     match reader.effect {
-        Effect::None | Effect::Group | Effect::Instance => Action::None,
+        Effect::None | Effect::Group | Effect::Instance | Effect::Grid => Action::None,
         Effect::Step { length, is_shoot } => Action::Step {
             length,
             own: if length == StepLength::Register {
@@ -159,7 +237,9 @@ pub fn action<O: Payload>(
         Effect::Translate => Action::Translate(triple()),
         Effect::Rotate => Action::Rotate(triple()),
         Effect::Scale => Action::Scale(triple() * number(3)),
-        Effect::Draw(primitive) if primitive.moves() => Action::Walk(number(0)),
+        Effect::Draw(primitive) if primitive.moves() => {
+            Action::Walk(f64::from(axis_walk(graph, node, reader)))
+        }
         Effect::Draw(_) => Action::None,
     }
 }

@@ -1,6 +1,7 @@
 //! Where the turtle stands and what it carries.
 
 use super::effect::{Change, N_REGISTERS, Register, Scope, StepLength};
+use crate::graph::NodeId;
 use glam::{DAffine3, DVec3};
 
 /// First values of the registers, in the order of [`Register`]: GroIMP's.
@@ -77,6 +78,19 @@ impl Registers {
     }
 }
 
+/// Whose surface a node has, unless it has a shader of its own: as in GroIMP, that of the nearest node on the way to the
+/// root that has one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Look {
+    /// Nobody's: grey.
+    #[default]
+    Grey,
+    /// That of a shoot of this colour, an index into the EGA palette.
+    Ega(i32),
+    /// That of a node with a shader.
+    Of(NodeId),
+}
+
 /// The turtle: a frame that walks through space and the registers it carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TurtleState {
@@ -88,6 +102,8 @@ pub struct TurtleState {
     pub order: u32,
     /// 1 + number of shoots on the way from the root.
     pub generative_distance: u32,
+    /// How what it draws looks.
+    pub look: Look,
 }
 
 impl Default for TurtleState {
@@ -98,6 +114,7 @@ impl Default for TurtleState {
             registers: Registers::default(),
             order: 0,
             generative_distance: 1,
+            look: Look::Grey,
         }
     }
 }

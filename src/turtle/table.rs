@@ -362,6 +362,14 @@ const BASIC: &[BuiltinType] = &[
                 "Translation along local z.",
             )
             .rare(),
+            field(
+                "transforming",
+                FieldType::Boolean,
+                1.0,
+                "",
+                "Whether what follows is moved along; if not, it begins where this node would have begun.",
+            )
+            .rare(),
         ],
         &[&[], &["transform.x", "transform.y", "transform.z"]],
         "Groups what follows, at an offset if one is given.",
@@ -375,7 +383,7 @@ const BASIC: &[BuiltinType] = &[
             FieldType::Shader,
             0.0,
             "",
-            "How its surface looks; null takes the turtle's.",
+            "How it and what follows look; null: as the last node before that has a shader, or that of a shoot's colour.",
         )
         .rare()],
         NO_ARGUMENTS,
@@ -392,7 +400,7 @@ const BASIC: &[BuiltinType] = &[
                 FieldType::Float,
                 0.0,
                 "",
-                "Share of the length that lies behind the turtle.",
+                "Where the turtle stands on it, as a share of the length: it is drawn from there on.",
             )
             .rare(),
             field(
@@ -400,7 +408,7 @@ const BASIC: &[BuiltinType] = &[
                 FieldType::Float,
                 1.0,
                 "",
-                "Share of the length after which what follows stands.",
+                "Share of the length after which what follows stands, measured from the turtle's old place.",
             )
             .rare(),
             field(
@@ -408,7 +416,7 @@ const BASIC: &[BuiltinType] = &[
                 FieldType::Boolean,
                 0.0,
                 "",
-                "Kept for models that set it; no effect.",
+                "Whether a `Box` is drawn half its width further back; what follows stands where it would.",
             )
             .rare(),
         ],
@@ -749,7 +757,12 @@ const SOLIDS: [BuiltinType; 12] = [
                 "Extent along local y.",
             ),
         ],
-        &[&[], &["length"], &["length", "width", "height"]],
+        &[
+            &[],
+            &["length"],
+            &["length", "shiftPivot"],
+            &["length", "width", "height"],
+        ],
         "A box that stands on the turtle's place.",
     ),
     ty(
@@ -911,27 +924,28 @@ const SOLIDS: [BuiltinType; 12] = [
     ty(
         "GridClonerNode",
         "Null",
-        Effect::Group,
+        Effect::Grid,
         &[
-            field("xCount", FieldType::Int, 1.0, "", "Copies along local x."),
-            field("yCount", FieldType::Int, 1.0, "", "Copies along local y."),
+            field("xCount", FieldType::Int, 10.0, "", "Copies along local x."),
+            field("yCount", FieldType::Int, 10.0, "", "Copies along local y."),
             field(
                 "xDistance",
                 FieldType::Float,
-                1.0,
+                10.0,
                 "m",
                 "Distance of copies along local x.",
             ),
             field(
                 "yDistance",
                 FieldType::Float,
-                1.0,
+                10.0,
                 "m",
                 "Distance of copies along local y.",
             ),
         ],
-        NO_ARGUMENTS,
-        "In GroIMP what follows is repeated in a grid; here it stands once.",
+        &[&[], &["xCount", "xDistance", "yCount", "yDistance"]],
+        "Repeats all that follows in a grid: copy (0, 0) stands where it would, copy (i, j) at `i * xDistance`, `j * yDistance`. \
+         GroIMP does so in its flux light model only; here pictures show the copies too.",
     ),
 ];
 

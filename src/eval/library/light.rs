@@ -8,22 +8,28 @@ use crate::library::ClassId;
 
 /// Power of lamps that set none, in W (GroIMP's).
 const LAMP_POWER: f32 = 100.0;
-/// Power density of directional light and sky that set none, in W/m² (GroIMP's).
-const POWER_DENSITY: f32 = 1.0;
+/// Power density of directional light that sets none, in W/m² (GroIMP's).
+const SUN_DENSITY: f32 = 10.0;
+/// Power density of a sky that sets none, in W/m² (GroIMP's).
+const SKY_DENSITY: f32 = 50.0;
 /// Rays and reflections of a light model that sets none (GroIMP's).
-const RAYS: i32 = 100_000;
+const RAYS: i32 = 30_000;
 const REFLECTIONS: i32 = 10;
 
 pub(super) fn make_lamp(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
     Ok(new_object(class, Data::Light(Light::new(LAMP_POWER))))
 }
 
-pub(super) fn make_distant(
+pub(super) fn make_directional(
     _: &mut Context<'_>,
     class: ClassId,
     _: &[Value],
 ) -> Result<Value, Trap> {
-    Ok(new_object(class, Data::Light(Light::new(POWER_DENSITY))))
+    Ok(new_object(class, Data::Light(Light::new(SUN_DENSITY))))
+}
+
+pub(super) fn make_sky(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Result<Value, Trap> {
+    Ok(new_object(class, Data::Light(Light::new(SKY_DENSITY))))
 }
 
 pub(super) fn make_model(

@@ -366,7 +366,7 @@ fn actions(command: &str) -> Vec<Action> {
     let triple = |fields: [&str; 3]| DVec3::from_array(fields.map(number));
     let bend = || (DVec3::from_slice(&args), args[3]);
     let action = match ty.effect {
-        Effect::None | Effect::Group | Effect::Instance => Action::None,
+        Effect::None | Effect::Group | Effect::Instance | Effect::Grid => Action::None,
         Effect::Step { length, is_shoot } => {
             let field = if length == StepLength::Own {
                 "length"
