@@ -394,6 +394,7 @@ fn run(text: &str, reached: &mut Reached) {
         memory: 64 << 20,
         body_depth: 50,
         body_nodes: 5_000,
+        ..interpret::Limits::default()
     };
     reached.drawn += u64::from(interpret::interpret(&mut growth, limits).is_ok());
 }
