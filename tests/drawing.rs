@@ -8,10 +8,10 @@ use understory::geometry::Shape;
 use understory::growth::{Growth, GrowthOptions};
 use understory::interpret::{Interpretation, Limits, interpret};
 use understory::light::Light;
-use understory::turtle::Layers;
 use understory::scene::Scene;
 use understory::scene::description::PlacedShape;
 use understory::syntax::parse;
+use understory::turtle::Layers;
 
 fn grow(text: &str) -> Growth {
     let file = SourceMap::default().add("model.rgg", text);

@@ -44,8 +44,8 @@ pub use source::{Body, Source};
 
 use crate::diag::Diagnostics;
 use crate::math::Bounds3;
-use crate::options::Layers;
 use crate::scene::description::SceneDescription;
+use crate::turtle::Layers;
 
 /// What drawing may cost, and what is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -16,7 +16,6 @@
 //! ```
 
 pub mod explain;
-pub mod layers;
 pub mod preset;
 pub mod setting;
 pub mod sidecar;
@@ -24,6 +23,5 @@ pub mod surroundings;
 pub mod table;
 pub mod value;
 
-pub use layers::Layers;
 pub use setting::{Origin, SetError, Setting};
 pub use table::{Command, OptionRow, Options, Section, Stage, TABLE};

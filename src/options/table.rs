@@ -1,6 +1,5 @@
 //! The table of options: one row each.
 
-use super::layers::Layers;
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::SkyKind;
 use super::value::{
@@ -9,6 +8,7 @@ use super::value::{
 use crate::diag::nearest;
 use crate::light::sun_position::{Moment, Place};
 use crate::math::angle::Angle;
+use crate::turtle::Layers;
 use glam::DVec3;
 use std::num::{NonZeroU32, NonZeroU64};
 use std::ops::Range;

@@ -2,6 +2,7 @@
 
 use crate::color::Rgb;
 use crate::math::angle::Angle;
+use crate::turtle::Layers;
 use glam::DVec3;
 use std::fmt::Debug;
 use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
@@ -166,6 +167,12 @@ impl OptionValue for Ground {
             }
             _ => Err("R,G,B (reflectances from 0 to 1), or `auto` or `none`".into()),
         }
+    }
+}
+
+impl OptionValue for Layers {
+    fn parse(text: &str) -> Result<Self, String> {
+        text.parse().map_err(str::to_owned)
     }
 }
 

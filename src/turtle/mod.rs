@@ -4,6 +4,7 @@
 //! are right-handed about a local axis.
 
 pub mod effect;
+pub mod layers;
 pub mod motion;
 pub mod pose;
 pub mod reading;
@@ -15,6 +16,7 @@ use crate::graph::{NewField, TypeId, TypeTable};
 use std::sync::LazyLock;
 
 pub use effect::Effect;
+pub use layers::Layers;
 pub use motion::Action;
 pub use pose::Poses;
 pub use state::{Look, Registers, TurtleState};

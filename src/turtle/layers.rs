@@ -3,8 +3,8 @@
 //! As in GroIMP there are sixteen, all of them shown unless the user hides some. A hidden node is not drawn and a lamp in it
 //! does not shine; what follows it stands where it would. Nodes with other layer numbers are always shown.
 
-use super::value::OptionValue;
 use std::fmt;
+use std::str::FromStr;
 
 /// How many layers can be hidden.
 const N_LAYERS: i32 = 16;
@@ -37,8 +37,11 @@ impl Layers {
     }
 }
 
-impl OptionValue for Layers {
-    fn parse(text: &str) -> Result<Self, String> {
+impl FromStr for Layers {
+    /// What is allowed.
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
         if text.trim() == "none" {
             return Ok(Self::default());
         }
@@ -71,12 +74,12 @@ mod tests {
 
     #[test]
     fn sets_are_read_and_written() {
-        let layers = Layers::parse(" 15, 1").unwrap();
+        let layers = " 15, 1".parse::<Layers>().unwrap();
         assert_eq!(layers.to_string(), "1,15");
         let shown: Vec<i32> = (-1..18).filter(|n| layers.contains(*n)).collect();
         assert_eq!(shown, [1, 15]);
-        assert_eq!(Layers::parse("none"), Ok(Layers::default()));
-        assert!(Layers::parse("16").unwrap_err().contains("0 to 15"));
-        assert!(Layers::parse("").is_err());
+        assert_eq!("none".parse(), Ok(Layers::default()));
+        assert!("16".parse::<Layers>().unwrap_err().contains("0 to 15"));
+        assert!("".parse::<Layers>().is_err());
     }
 }
