@@ -216,6 +216,150 @@ const CASES: &[(&str, bool, &str)] = &[
     ("derive in a rule", true, "    Bud(x) ==> derive() F(x);"),
     ("init is private", false, "void init() [ Axiom ==> F(1); ]"),
     ("break outside of a loop", false, "void f() { break; }"),
+    // Queries.
+    (
+        "query without stars",
+        true,
+        "    Bud(x) ==> { count = count((Leaf)); } F(x);",
+    ),
+    (
+        "query that is not closed",
+        true,
+        "    Bud(x) ==> { println(count((* Leaf ))); } F(x);",
+    ),
+    (
+        "unknown module in a query",
+        true,
+        "    Bud(x) ==> { println(sum((* Laef *)[size])); } F(x);",
+    ),
+    (
+        "unknown attribute in a query",
+        true,
+        "    Bud(x) ==> { println(sum((* Leaf *)[siz])); } F(x);",
+    ),
+    (
+        "condition of a query without a comma",
+        true,
+        "    Bud(x) ==> { println(count((* l:Leaf (l[size] > 1) *))); } F(x);",
+    ),
+    (
+        "condition of a query without parentheses",
+        true,
+        "    Bud(x) ==> { println(count((* l:Leaf, l[size] > 1 *))); } F(x);",
+    ),
+    (
+        "condition beside a query",
+        true,
+        "    Bud(x) ==> { println(forall((* l:Leaf *), l[size] > 1)); } F(x);",
+    ),
+    (
+        "query that can match nothing",
+        false,
+        "module A; module B;\nprotected void init() [ Axiom ==> A; ]\npublic void run() [ A ==> F(1); { println(count((* B *))); } ]",
+    ),
+    (
+        "rule that never applies",
+        false,
+        "module A; module B;\nprotected void init() [ Axiom ==> A; ]\npublic void run() [ A ==> F(1); A ==> B; ]",
+    ),
+    (
+        "module that is never used",
+        false,
+        "module A; module B(int n);\nprotected void init() [ Axiom ==> A; ]\npublic void run() [ A ==> F(1); ]",
+    ),
+    // Habits from other languages.
+    (
+        "nodes in braces",
+        true,
+        "    Bud(x) ==> if (x < 3) { F(x) Bud(x) };",
+    ),
+    (
+        "nodes behind an execution arrow",
+        true,
+        "    Bud(x) ::> F(x) Bud(x);",
+    ),
+    (
+        "array in brackets",
+        false,
+        "void f() { float[] a = [1, 2, 3]; }",
+    ),
+    (
+        "loop with in",
+        false,
+        "void f() { for (int i in 1:3) println(i); }",
+    ),
+    (
+        "elif",
+        false,
+        "void f(int a) { if (a == 1) println(1); elif (a == 2) println(2); }",
+    ),
+    (
+        "and, not",
+        false,
+        "void f(int a) {\n    if (a == 1 and a < 2) println(1);\n    if (not a) println(2);\n}",
+    ),
+    (
+        "array used as a list",
+        false,
+        "void f(float[] a) { println(a.get(0)); println(a.length()); }",
+    ),
+    (
+        "list used as an array",
+        false,
+        "void f(java.util.ArrayList a) { println(a[0]); println(a.length); }",
+    ),
+    (
+        "printing with a small letter",
+        false,
+        "void f() { system.out.println(1); }",
+    ),
+    (
+        "list without a cast",
+        false,
+        "void f(java.util.ArrayList a) { float x = a.get(0); }",
+    ),
+    (
+        "text in single quotes",
+        false,
+        "void f() { println('hello'); }",
+    ),
+    (
+        "method without a result type",
+        false,
+        "grow() [ Axiom ==> F(1); ]",
+    ),
+    (
+        "misspelt setter",
+        true,
+        "    Bud(x) ==> Sphere(x).(setShader(RED), setRadus(3), setColour(1, 0, 0));",
+    ),
+    (
+        "misspelt setter of a light",
+        true,
+        "    Bud(x) ==> LightNode.(setLight(new SpotLight().(setOuterAngel(1))));",
+    ),
+    (
+        "wrong arguments of a parent",
+        false,
+        "module A(float x) extends Sphere(x, 3);",
+    ),
+    (
+        "inherited property that is not there",
+        false,
+        "module A(super.size) extends Sphere;",
+    ),
+    (
+        "module that extends itself",
+        false,
+        "module A extends B;\nmodule B extends A;",
+    ),
+    ("attribute without its node", true, "    Bud(x) ==> F(age);"),
+    ("label given twice", true, "    b:Bud b:Leaf ==> F(1);"),
+    (
+        "constant changed",
+        false,
+        "const int N = 3;\nvoid f() { N = 4; }",
+    ),
     (
         "something that is not supported",
         false,

@@ -172,6 +172,14 @@ impl Context {
         })
     }
 
+    /// The type of what the innermost `.( … )` speaks of.
+    pub(super) fn innermost_with(&self) -> Option<&Type> {
+        self.layers.iter().rev().find_map(|layer| match layer {
+            Layer::With(_, ty) => Some(ty),
+            Layer::Block(_) => None,
+        })
+    }
+
     /// Names of all variables that can be seen.
     pub(super) fn local_names(&self) -> Vec<String> {
         let blocks = self.layers.iter().rev().filter_map(|layer| match layer {

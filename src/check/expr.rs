@@ -123,6 +123,15 @@ impl Checker<'_> {
         }
     }
 
+    /// The first module that declares a field of this name.
+    fn owner_of_field(&self, name: &str) -> Option<String> {
+        let mut modules = self.modules.iter().filter(|module| module.class.is_none());
+        let owner = modules.find(|module| {
+            super::declare::own_fields(module.ast).any(|(_, ident, _)| ident.name == name)
+        })?;
+        Some(owner.ast.name.name.clone())
+    }
+
     /// The fault of a name that is no variable; `None` if it is one of a thing refused before.
     fn unknown_variable(&self, name: &str, span: Span) -> Option<Diagnostic> {
         if self.refused.contains(name) || self.cx.this.is_some_and(|this| self.is_orphan(this)) {
@@ -133,8 +142,19 @@ impl Checker<'_> {
             return Some(
                 fault
                     .label("this is a type")
-                    .hint(format!("write `new {name}()` to make one")),
+                    .hint(match self.node_type(name) {
+                        Some(_) => format!(
+                            "write `(* {name} *)` for all there are, `new {name}(…)` for a new one"
+                        ),
+                        None => format!("write `new {name}(…)` to make one"),
+                    }),
             );
+        }
+        if let Some(owner) = self.owner_of_field(name) {
+            let letter = owner.chars().next().map_or('x', |c| c.to_ascii_lowercase());
+            return Some(fault.label("no such variable here").hint(format!(
+                "`{name}` belongs to `{owner}`: match a node, `{letter}:{owner}`, and write `{letter}[{name}]`"
+            )));
         }
         if self.method_names.contains_key(name) || !library::functions_named("", name).is_empty() {
             return Some(

@@ -39,6 +39,9 @@ impl Checker<'_> {
         if names[last] == "out" && last > 0 && names[last - 1] == "System" {
             return Some("System.out".into());
         }
+        if names[last] == "out" && last > 0 {
+            return Some(names[last - 1..].join("."));
+        }
         Some(names[last].trim().into())
     }
 
@@ -113,6 +116,8 @@ impl Checker<'_> {
                 let is_method = !self.object_overloads(&ty, name).is_empty();
                 let fault = if is_method {
                     fault.hint(format!("write `{name}()` to call it"))
+                } else if name == "length" && !self.object_overloads(&ty, "size").is_empty() {
+                    fault.hint("write `size()`: only arrays have a `length`")
                 } else {
                     fault
                 };

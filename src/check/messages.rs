@@ -59,10 +59,24 @@ impl Checker<'_> {
             return;
         }
         self.probe_member(member, ty);
-        let name = member.name.as_str();
+        let fault = self.unknown_method(ty, &member.name, member.span);
+        self.report(fault);
+    }
+
+    /// The fault of a method that objects of a type do not have.
+    fn unknown_method(&self, ty: &Type, name: &str, span: Span) -> Diagnostic {
         let message = format!("`{}` has no method `{name}`", self.type_name(ty));
-        let fault =
-            Diagnostic::error("unknown-method", member.span, message).label("no such method");
+        let fault = Diagnostic::error("unknown-method", span, message).label("no such method");
+        if matches!(ty, Type::Array(_)) {
+            return match name {
+                "length" | "size" => fault.hint("write `.length` without parentheses"),
+                "get" | "set" => fault.hint("write `a[i]`, and `a[i] = value` to set it"),
+                "add" | "remove" => {
+                    fault.hint("an array keeps its length: take an `ArrayList` for what grows")
+                }
+                _ => fault,
+            };
+        }
         let lineage: Vec<&str> = match ty {
             Type::Class(class) => class.lineage().map(ClassId::name).collect(),
             Type::String => vec!["String"],
@@ -100,9 +114,11 @@ impl Checker<'_> {
                 format!("{prefix}{first}{}", letters.as_str())
             };
             known.extend(visible.map(accessor));
+            if self.types.field(*id, "shader").is_some() {
+                known.push("setColor".into());
+            }
         }
-        let fault = self.did_you_mean(fault, name, known.iter().map(String::as_str));
-        self.report(fault);
+        self.did_you_mean(fault, name, known.iter().map(String::as_str))
     }
 
     /// The fault of a call of something unknown; `None` if it was refused before.
@@ -119,9 +135,23 @@ impl Checker<'_> {
             );
             return Some(fault.hint("write `for (apply(n)) …`"));
         }
+        if super::aggregate::NAMES.contains(&name) {
+            let message = format!("`{name}` does not take these arguments");
+            let fault = Diagnostic::error("wrong-arguments", span, message);
+            return Some(fault.hint(if name.starts_with("selectWhere") {
+                format!("it takes a query and what is asked of each: `{name}((* l:Leaf *), l[area])`")
+            } else {
+                format!("it takes the values alone, such as `{name}((* Leaf *)[area])`; a condition on them is written `(* l:Leaf, (l[area] > 1) *)` or, for `forall` and `exist`, `(* Leaf *)[area] > 1`")
+            }));
+        }
         if let Some(hint) = super::refuse::function_hint(name) {
             let message = format!("`{name}` is not supported");
             return Some(Diagnostic::error("unsupported-function", span, message).hint(hint));
+        }
+        // In `x.( … )` it is most often meant for `x`.
+        let is_setter = name.starts_with("set") && !self.method_names.contains_key(name);
+        if let Some(ty) = self.cx.innermost_with().filter(|_| is_setter) {
+            return Some(self.unknown_method(ty, name, span));
         }
         let fault = Diagnostic::error(
             "unknown-function",
@@ -190,6 +220,10 @@ impl Checker<'_> {
             return Diagnostic::error("unsupported-type", span, message).hint(hint);
         }
         let message = format!("unknown variable `{owner}`");
+        if let Some(class) = owner.strip_suffix(".out") {
+            let fault = Diagnostic::error("unknown-name", span, format!("unknown `{class}`"));
+            return fault.hint("write `System.out.println(…)`, or `println(…)` alone");
+        }
         let fault = Diagnostic::error("unknown-name", span, message);
         let locals = self.cx.local_names();
         let statics = self.statics.iter().map(|s| s.name);

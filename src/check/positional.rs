@@ -38,7 +38,9 @@ impl Checker<'_> {
                 params.len()
             );
             let mut fault = Diagnostic::error("pattern-arguments", span, message);
-            if n_given < params.len() {
+            if args.last().is_some_and(is_comparison) {
+                fault = fault.hint("a condition stands behind a comma: `x:A, (x[n] > 4)`");
+            } else if n_given < params.len() {
                 fault = fault.hint(format!(
                     "leave gaps for the others: `{name}(x{})`",
                     ",".repeat(params.len() - 1)
@@ -133,7 +135,23 @@ impl Checker<'_> {
             fault.hints =
                 vec!["patterns compare exactly: write the number with an `f` at its end".into()];
         }
+        if value.ty == Type::Boolean {
+            fault = fault.hint("a condition stands behind a comma: `A(x), (x > 4)`");
+        }
         self.report(fault);
         None
     }
+}
+
+/// `x > 3`: as an argument of a pattern most likely a condition.
+fn is_comparison(arg: &Option<ast::Expr>) -> bool {
+    use ast::BinaryOp::{And, Eq, Ge, Gt, Le, Lt, Ne, Or};
+    let kind = arg.as_ref().map(|arg| &arg.kind);
+    matches!(
+        kind,
+        Some(ast::ExprKind::Binary(
+            And | Or | Eq | Ne | Lt | Le | Gt | Ge,
+            ..
+        ))
+    )
 }

@@ -130,8 +130,22 @@ pub struct Diagnostic {
     pub secondary: Vec<Label>,
     /// What to do about it.
     pub hints: Vec<String>,
-    /// For run-time errors: what was being done, innermost first ("while applying the rule at line 40 in step 7").
-    pub trace: Vec<String>,
+    /// For run-time errors: what was being done, innermost first ("while applying the rule at line 40 to Bud(3)").
+    pub trace: Vec<Doing>,
+}
+
+/// A line of what was being done when something failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Doing {
+    /// What, in words; [`Doing::PLACE`] stands for the place.
+    pub text: String,
+    /// Where in the model, if that is said.
+    pub at: Option<Span>,
+}
+
+impl Doing {
+    /// What [`render`] replaces by the place in words, such as `line 40`.
+    pub const PLACE: &'static str = "{place}";
 }
 
 impl Diagnostic {
@@ -189,8 +203,15 @@ impl Diagnostic {
 
     /// Adds a line of what was being done.
     #[must_use]
-    pub fn during(mut self, text: impl Into<String>) -> Self {
-        self.trace.push(text.into());
+    pub fn during(self, text: impl Into<String>) -> Self {
+        self.during_at(text, None)
+    }
+
+    /// Adds a line of what was being done; [`Doing::PLACE`] in it stands for the place.
+    #[must_use]
+    pub fn during_at(mut self, text: impl Into<String>, at: Option<Span>) -> Self {
+        let text = text.into();
+        self.trace.push(Doing { text, at });
         self
     }
 }

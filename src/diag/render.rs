@@ -1,6 +1,6 @@
 //! Diagnostics as text for people: what, where with an excerpt, why, and what to do about it.
 
-use super::{Diagnostic, Diagnostics, Label, Severity, SourceMap, Span};
+use super::{Diagnostic, Diagnostics, Doing, Label, Severity, SourceMap, Span};
 use ariadne::{Cache, Color, Config, IndexType, Report, ReportKind};
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -120,9 +120,32 @@ impl<'s> Renderer<'s> {
             .with_config(self.config)
             .with_message(&diagnostic.message)
             .with_labels(labels);
-        report.with_notes(&diagnostic.trace);
+        // One note: each line of it goes on where the one above ends.
+        let trace = self.trace(diagnostic);
+        report.with_notes((!trace.is_empty()).then(|| trace.join("\n")));
         report.with_helps(&diagnostic.hints);
         report.finish()
+    }
+
+    /// What was being done, with places in words.
+    fn trace(&self, diagnostic: &Diagnostic) -> Vec<String> {
+        let line = |doing: &Doing| match doing.at {
+            Some(span) => doing.text.replace(Doing::PLACE, &self.in_words(span)),
+            None => doing.text.clone(),
+        };
+        diagnostic.trace.iter().map(line).collect()
+    }
+
+    /// `line 40`, or `organs.rgg:40` in a model of several files.
+    fn in_words(&self, span: Span) -> String {
+        let (line, _) = self.sources.line_column(span);
+        match self.sources.file(span.file) {
+            Some(file) if self.sources.files().len() > 1 => {
+                let name = file.name.rsplit(['/', '\\']).next().unwrap_or_default();
+                format!("{name}:{line}")
+            }
+            _ => format!("line {line}"),
+        }
     }
 
     fn labels<'d>(&self, diagnostic: &'d Diagnostic) -> impl Iterator<Item = &'d Label> {
@@ -173,7 +196,10 @@ impl<'s> Renderer<'s> {
         for label in primary.into_iter().chain(&diagnostic.secondary) {
             self.surroundings(label, &mut text);
         }
-        for (word, lines) in [("Note", &diagnostic.trace), ("Help", &diagnostic.hints)] {
+        for (word, lines) in [
+            ("Note", &self.trace(diagnostic)),
+            ("Help", &diagnostic.hints),
+        ] {
             for line in lines {
                 let _ = writeln!(text, "  {word}: {line}"); // Writing to a string cannot fail.
             }
@@ -240,7 +266,12 @@ mod tests {
         )
         .label("no such module")
         .also(span(text, "Größe(int"), "the only module")
-        .during("while applying the rule at line 3 in step 7")
+        .during_at(
+            "while applying the rule at {place} to Größe(2)",
+            Some(span(text, "Größe(x)")),
+        )
+        .during("in method `grow`")
+        .during("in step 7")
         .hint("did you mean `Internode`?");
         insta::assert_snapshot!(render(&sources(text), &diagnostic.into()));
     }

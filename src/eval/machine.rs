@@ -49,6 +49,8 @@ const EXCLUDE_DELETED: i32 = 8;
 const DEFAULT_MODE: i32 = EXCLUDE_DELETED;
 /// Texts up to this length take no share of the memory budget.
 const FREE_TEXT: usize = 64;
+/// So many rules of a step are named when the step as a whole fails.
+const MOST_RULES: usize = 4;
 /// Turns between two looks at the cancellation token.
 const CHECK_EVERY: u64 = 1 << 14;
 
@@ -93,6 +95,8 @@ pub struct Machine {
     pub uses_templates: bool,
     /// A step that could not be applied. The model goes on without it and fails when the entry method ends.
     failed_step: Option<Trap>,
+    /// Rules that this step has applied so far, the first few, for messages.
+    applied: Vec<Span>,
     limits: Limits,
     output: Output,
     stop: StopSign,
@@ -161,6 +165,7 @@ impl Machine {
             is_finished: false,
             uses_templates: true,
             failed_step: None,
+            applied: vec![],
             limits: setup.limits,
             output: setup.output,
             stop: setup.stop,
@@ -194,6 +199,7 @@ impl Machine {
     pub fn begin(&mut self, stack_bytes: usize) {
         self.n_ticks = 0;
         self.failed_step = None;
+        self.applied.clear();
         self.check_at = CHECK_EVERY;
         self.stand(stack_bytes);
     }
@@ -255,7 +261,7 @@ impl Machine {
             "this loop does not end: {} turns and calls in one step",
             self.limits.steps
         );
-        let hint = "does its condition ever become false?";
+        let hint = "does its condition ever become false? does a rule multiply without end?";
         Err(Trap::limit("step-limit", message, hint, Some(span)))
     }
 
@@ -312,25 +318,32 @@ impl Machine {
             .map_err(|error| Trap::from(error).at(span))
     }
 
-    /// Applies what the rules have queued, for the call of `derive()` at `span`.
-    pub fn derive(&mut self, span: Span) -> Result<(), Trap> {
-        match self.queue.apply(&mut self.graph) {
-            Ok(()) => Ok(()),
-            Err(RewriteError::Graph(error @ GraphError::SelfEdge)) => {
-                // As in GroIMP the whole step is dropped, but the method that called goes on.
-                let note = "the whole step that was applied here is dropped";
-                self.failed_step.get_or_insert_with(|| {
-                    Trap::from(error).at(span).noting(span, || note.to_owned())
-                });
-                Ok(())
-            }
-            Err(RewriteError::Graph(error)) => Err(Trap::from(error).at(span)),
-            Err(RewriteError::DivisionByZero) => Err(Trap::exception(
-                ClassId::ArithmeticException,
-                "/ by zero",
-                span,
-            )),
+    /// Notes that the rule at `span` has queued something.
+    pub fn note_rule(&mut self, span: Span) {
+        if self.applied.len() < MOST_RULES && !self.applied.contains(&span) {
+            self.applied.push(span);
         }
+    }
+
+    /// Applies what the rules have queued, for the call of `derive()` (or the end of the method) at `span`.
+    pub fn derive(&mut self, span: Span) -> Result<(), Trap> {
+        let applied = self.queue.apply(&mut self.graph);
+        let rules = std::mem::take(&mut self.applied);
+        let Err(error) = applied else { return Ok(()) };
+        let is_dropped = matches!(error, RewriteError::Graph(GraphError::SelfEdge));
+        let trap = match error {
+            RewriteError::Graph(error) => Trap::from(error),
+            RewriteError::DivisionByZero => {
+                Trap::exception(ClassId::ArithmeticException, "/ by zero", span)
+            }
+        };
+        let trap = blame(trap, &rules, span);
+        if !is_dropped {
+            return Err(trap);
+        }
+        // As in GroIMP the whole step is dropped, but the method that called goes on.
+        self.failed_step.get_or_insert(trap);
+        Ok(())
     }
 
     /// The failure of a step that was dropped since the last call.
@@ -388,6 +401,23 @@ impl Machine {
             Err(_) => format!("deleted node [{}]", node.index()),
         }
     }
+}
+
+/// A step failed as a whole, at `span`, after these rules were applied.
+#[cold]
+fn blame(trap: Trap, rules: &[Span], span: Span) -> Trap {
+    let doing = "while the new graph was made, at {place}".to_owned();
+    let trap = match rules {
+        [] => trap.at(span),
+        [rule] => trap.at(*rule),
+        rules => {
+            let trap = trap.at(span);
+            rules.iter().fold(trap, |trap, rule| {
+                trap.pointing(*rule, "one of the rules of this step")
+            })
+        }
+    };
+    trap.during(doing, Some(span))
 }
 
 #[cold]

@@ -38,6 +38,8 @@ pub struct Program {
 /// A method.
 struct Method {
     name: String,
+    /// The name in its declaration.
+    name_span: Span,
     this: Option<TypeId>,
     layout: Layout,
     /// `None` if it is abstract.
@@ -163,20 +165,16 @@ impl Program {
     }
 
     /// Runs `init`, if there is one, and applies what it has queued.
-    pub fn run_init(&self, machine: &mut Machine, span: Span) -> Result<(), Trap> {
+    pub fn run_init(&self, machine: &mut Machine) -> Result<(), Trap> {
         if let Some(init) = self.init {
-            self.run_entry(init, machine, span)?;
+            self.run_entry(init, machine)?;
         }
         Ok(())
     }
 
     /// Runs a method without parameters and applies what it has queued.
-    pub fn run_entry(
-        &self,
-        method: MethodId,
-        machine: &mut Machine,
-        span: Span,
-    ) -> Result<(), Trap> {
+    pub fn run_entry(&self, method: MethodId, machine: &mut Machine) -> Result<(), Trap> {
+        let span = self.methods[method.0 as usize].name_span;
         let mark = machine.stack.mark();
         self.run_method(method, machine, mark, span)?;
         machine.derive(span)?;
@@ -210,10 +208,22 @@ impl Program {
         m.stack.release(mark);
         match result {
             Ok(_) => Ok(()),
-            Err(trap) => Err(trap.during(|| match method.this {
-                Some(ty) => format!("in method `{}.{}`", self.types[ty].name, method.name),
-                None => format!("in method `{}`", method.name),
-            })),
+            Err(trap) => Err(self.trace_method(trap, method, span)),
+        }
+    }
+
+    #[cold]
+    fn trace_method(&self, trap: Trap, method: &Method, called_at: Span) -> Trap {
+        let owner = match method.this {
+            Some(ty) => format!("{}.", self.types[ty].name),
+            None => String::new(),
+        };
+        let text = format!("in method `{owner}{}`", method.name);
+        // Nothing in the model calls the entry method.
+        if called_at == method.name_span {
+            trap.during(text, None)
+        } else {
+            trap.during(format!("{text}, called at {{place}}"), Some(called_at))
         }
     }
 
@@ -232,7 +242,10 @@ impl Program {
         m.enter_call(&self.types[ty].name, span)?;
         self.run(&module.constructor, m, mark)
             .map(drop)
-            .map_err(|trap| trap.during(|| format!("while a `{}` was made", self.types[ty].name)))
+            .map_err(|trap| {
+                let name = &self.types[ty].name;
+                trap.during(format!("while making a `{name}` at {{place}}"), Some(span))
+            })
     }
 
     /// Makes what the instantiation body of a node draws.
@@ -252,10 +265,11 @@ impl Program {
         let mut made = m.queue.end_instantiation();
         if let Err(trap) = result {
             m.queue.free_instantiated(&mut m.graph, &mut made);
-            let name = m.node_name(node);
-            return Err(trap
-                .at(module.span)
-                .during(|| format!("while {name} was drawn")));
+            let what = format!(
+                "while drawing {} with the body at {{place}}",
+                m.graph.node_text(node)
+            );
+            return Err(trap.at(module.span).during(what, Some(module.span)));
         }
         Ok(made)
     }
@@ -289,6 +303,7 @@ impl Compiler<'_> {
         let body = method.body.as_ref().map(|body| scope.body(body));
         Method {
             name: method.name.clone(),
+            name_span: method.name_span,
             this: method.this,
             layout: scope.into_layout(),
             body,

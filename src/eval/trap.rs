@@ -1,17 +1,19 @@
 //! What ends an evaluation early: exceptions, which the model can catch, and limits, which it cannot.
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::memory::OverBudget;
 use super::object::{Data, Object, qualified};
 use super::text::Text;
 use super::value::Value;
-use crate::diag::{Diagnostic, Label, Span};
+use crate::diag::{Diagnostic, Doing, Label, Span};
 use crate::graph::GraphError;
 use crate::library::ClassId;
 
-/// Most lines of trace that are kept; a deep recursion has thousands of equal ones.
-const MAX_TRACE: usize = 8;
+/// Most lines of trace that are kept of the innermost and of the outermost; a deep recursion has thousands.
+const MAX_INNER: usize = 6;
+const MAX_OUTER: usize = 4;
 
 /// The reason an evaluation ended early. Boxed, so that results of expressions stay small.
 #[derive(Debug)]
@@ -22,8 +24,28 @@ struct Fault {
     cause: Cause,
     span: Option<Span>,
     notes: Vec<(Span, String)>,
-    trace: Vec<String>,
+    /// What to do about an exception of the language.
+    hint: Option<&'static str>,
+    inner: Vec<Traced>,
+    outer: VecDeque<Traced>,
     n_omitted: usize,
+}
+
+/// A line of the trace, and how often it came in a row.
+#[derive(Debug)]
+struct Traced {
+    doing: Doing,
+    times: usize,
+}
+
+impl Traced {
+    fn line(self) -> Doing {
+        let Self { mut doing, times } = self;
+        if times > 1 {
+            doing.text.push_str(&format!(" ({times} times)"));
+        }
+        doing
+    }
 }
 
 /// Why an evaluation ended.
@@ -51,7 +73,9 @@ impl Trap {
             cause,
             span,
             notes: vec![],
-            trace: vec![],
+            hint: None,
+            inner: vec![],
+            outer: VecDeque::new(),
             n_omitted: 0,
         }))
     }
@@ -60,10 +84,10 @@ impl Trap {
     pub fn exception(class: ClassId, message: impl Into<Box<str>>, span: Span) -> Self {
         let text = Arc::new(Text::new(message, super::memory::Charge::none()));
         let object = Object::new(class, Data::Throwable(Some(text)));
-        Self::new(
-            Cause::Exception(Value::Object(Arc::new(object))),
-            Some(span),
-        )
+        let thrown = Value::Object(Arc::new(object));
+        let mut trap = Self::new(Cause::Exception(thrown), Some(span));
+        trap.0.hint = advice(class);
+        trap
     }
 
     /// `NullPointerException`: `what` was done to null.
@@ -121,23 +145,45 @@ impl Trap {
         self
     }
 
-    /// Adds what was being done, innermost first.
+    /// Adds what was being done, innermost first; `{place}` in the text stands for the place.
     #[must_use]
-    pub fn during(mut self, line: impl FnOnce() -> String) -> Self {
-        if self.0.trace.len() < MAX_TRACE {
-            self.0.trace.push(line());
-        } else {
-            self.0.n_omitted += 1;
+    pub fn during(mut self, text: String, at: Option<Span>) -> Self {
+        let fault = &mut *self.0;
+        let doing = Doing { text, at };
+        let last = fault.outer.back_mut().or(fault.inner.last_mut());
+        if let Some(last) = last.filter(|last| last.doing == doing) {
+            last.times += 1;
+            return self;
+        }
+        let traced = Traced { doing, times: 1 };
+        if fault.inner.len() < MAX_INNER {
+            fault.inner.push(traced);
+            return self;
+        }
+        fault.outer.push_back(traced);
+        if fault.outer.len() > MAX_OUTER {
+            let omitted = fault.outer.pop_front();
+            fault.n_omitted += omitted.map_or(0, |traced| traced.times);
         }
         self
     }
 
-    /// Adds another place, unless there is one already: the innermost rule explains most.
+    /// Adds another place, unless there is one already or the fault lies in it: the innermost rule explains most.
     #[must_use]
-    pub fn noting(mut self, span: Span, text: impl FnOnce() -> String) -> Self {
-        if self.0.notes.is_empty() {
-            self.0.notes.push((span, text()));
+    pub fn noting(self, span: Span, text: &str) -> Self {
+        let is_inside = self.0.span.is_some_and(|own| {
+            own.file == span.file && span.start <= own.start && own.end <= span.end
+        });
+        if is_inside || !self.0.notes.is_empty() {
+            return self;
         }
+        self.pointing(span, text)
+    }
+
+    /// Adds another place.
+    #[must_use]
+    pub fn pointing(mut self, span: Span, text: &str) -> Self {
+        self.0.notes.push((span, text.to_owned()));
         self
     }
 
@@ -147,11 +193,16 @@ impl Trap {
             cause,
             span,
             notes,
-            trace,
+            hint: advice,
+            inner,
+            outer,
             n_omitted,
         } = *self.0;
         let (slug, message, hint) = match cause {
-            Cause::Exception(value) => ("exception", value.to_string(), None),
+            Cause::Exception(value) => {
+                let advice = advice.map(str::to_owned);
+                ("exception", value.to_string(), advice)
+            }
             Cause::Limit {
                 slug,
                 message,
@@ -171,10 +222,12 @@ impl Trap {
             .secondary
             .extend(notes.into_iter().map(|(span, text)| Label { span, text }));
         diagnostic.hints.extend(hint);
-        diagnostic.trace = trace;
+        let lines = |traced: Vec<Traced>| traced.into_iter().map(Traced::line);
+        diagnostic.trace.extend(lines(inner));
         if n_omitted > 0 {
-            diagnostic.trace.push(format!("… {n_omitted} more"));
+            diagnostic = diagnostic.during(format!("… {n_omitted} more"));
         }
+        diagnostic.trace.extend(lines(outer.into()));
         diagnostic
     }
 }
@@ -201,10 +254,38 @@ impl From<GraphError> for Trap {
                 );
             }
         };
+        let is_loop = class == ClassId::IllegalArgumentException;
         let mut trap = Self::exception(class, message, Span::default());
         trap.0.span = None;
+        if is_loop {
+            trap.0.hint = Some(
+                "does a label stand twice in a row on the right-hand side, or `^` behind `==>` (there `==>>` is meant)? \
+                 the whole step is dropped",
+            );
+        }
         trap
     }
+}
+
+/// What a modeller can do about an exception that the language threw.
+fn advice(class: ClassId) -> Option<&'static str> {
+    Some(match class {
+        ClassId::NullPointerException => {
+            "test it with `!= null` before: a variable without a value, and `first` or `selectWhere` of nothing, are null"
+        }
+        ClassId::ArithmeticException => {
+            "whole numbers cannot be divided by 0: test the divisor, or divide as `double`: `1.0 * a / b`"
+        }
+        ClassId::ArrayIndexOutOfBoundsException
+        | ClassId::IndexOutOfBoundsException
+        | ClassId::StringIndexOutOfBoundsException => "indices go from 0 to the length less 1",
+        ClassId::ClassCastException => "test it with `instanceof` before",
+        ClassId::NumberFormatException => {
+            "a number has a point and no unit, such as `1.5`: `replace(',', '.')` and `trim()` mend a text"
+        }
+        ClassId::NoSuchElementException => "ask whether there is one more before",
+        _ => return None,
+    })
 }
 
 /// Java's full name and message of something thrown, as at the head of a stack trace.
@@ -231,14 +312,18 @@ mod tests {
         let span = Span::new(FileId(0), 3, 5);
         let mut trap = Trap::exception(ClassId::ArithmeticException, "/ by zero", span);
         for i in 0..20 {
-            trap = trap.during(|| format!("in method `f{i}`"));
+            trap = trap.during(format!("in method `f{i}`"), None);
+            trap = trap.during(format!("in method `f{i}`"), None);
         }
         let diagnostic = trap.into_diagnostic();
         assert_eq!(
             diagnostic.message,
             "java.lang.ArithmeticException: / by zero"
         );
-        assert_eq!(diagnostic.trace.len(), MAX_TRACE + 1);
-        assert_eq!(diagnostic.trace[MAX_TRACE], "… 12 more");
+        let lines: Vec<&str> = diagnostic.trace.iter().map(|d| d.text.as_str()).collect();
+        assert_eq!(lines.len(), MAX_INNER + 1 + MAX_OUTER);
+        assert_eq!(lines[0], "in method `f0` (2 times)");
+        assert_eq!(lines[MAX_INNER], "… 20 more");
+        assert_eq!(lines[MAX_INNER + MAX_OUTER], "in method `f19` (2 times)");
     }
 }

@@ -113,11 +113,14 @@ impl Growth {
         self.n_steps = 0;
         self.machine.step = 0;
         let seed = self.options.seed;
-        self.run_deep("in `init`".to_owned(), |program, machine| {
+        let before = "before `init`, where the variables of the model are set";
+        self.run_deep(before.to_owned(), |program, machine| {
             machine.clear(program)?;
             machine.random.set_seed(seed);
-            program.initialize(machine)?;
-            program.run_init(machine, Span::default())
+            program.initialize(machine)
+        })?;
+        self.run_deep("before step 1".to_owned(), |program, machine| {
+            program.run_init(machine)
         })
     }
 
@@ -134,7 +137,7 @@ impl Growth {
         let number = self.n_steps + 1;
         self.machine.step = number;
         self.run_deep(format!("in step {number}"), |program, machine| {
-            program.run_entry(entry, machine, Span::default())
+            program.run_entry(entry, machine)
         })?;
         self.n_steps = number;
         Ok(())
@@ -240,7 +243,10 @@ impl Growth {
         self.machine.stand(self.body_stack);
         self.program
             .instantiate(node, &mut self.machine)
-            .map_err(boxed)
+            .map_err(|trap| {
+                let step = self.n_steps;
+                Box::new(trap.into_diagnostic().during(format!("after step {step}")))
+            })
     }
 
     /// Frees what [`Growth::instantiate`] made.

@@ -209,10 +209,7 @@ impl<S: Source> Painter<'_, S> {
     }
 
     fn run_body(&mut self, node: NodeId) -> Result<Instantiated, Failure> {
-        self.source.instantiate(node).map_err(|failure| {
-            let name = self.name(node, Place::default());
-            Box::new(failure.during(format!("while drawing the body of {name}")))
-        })
+        self.source.instantiate(node)
     }
 
     /// Draws what a body made; each of its parts begins from `start`.

@@ -50,6 +50,9 @@ pub(super) fn explain(
         .or_else(|| here.misplaced())
         .or_else(|| here.wrong_word())
         .or_else(|| before.wrong_word())
+        .or_else(|| here.unclosed_query())
+        .or_else(|| here.bare_condition())
+        .or_else(|| before.bare_condition())
         .or_else(|| here.code_without_braces())
         .or_else(|| before.condition_without_comma());
     let alone = |diagnostic| Explanation {
@@ -196,8 +199,18 @@ impl Case<'_, '_> {
 
     fn missing_semicolon(&self) -> Diagnostic {
         let message = format!("expected `;` after the {}", self.noun());
-        self.error("missing-semicolon", self.behind(self.at), message)
-            .label("`;` is missing here")
+        let fault = self
+            .error("missing-semicolon", self.behind(self.at), message)
+            .label("`;` is missing here");
+        let is_capital = |word: &str| word.starts_with(char::is_uppercase);
+        let is_same_line = !self.cutter.is_on_new_line(self.at);
+        if self.unit == Unit::RuleItem && self.cutter.has(self.tokens.start, self.at, &["::>"]) {
+            fault.hint("behind `::>` stands one statement or `{ … }`; to make nodes write `==>`")
+        } else if is_same_line && is_capital(self.first_word()) && is_capital(self.word(self.at)) {
+            fault.hint("are these nodes of a rule? on a right-hand side nodes stand in `( )`, code in `{ }`")
+        } else {
+            fault
+        }
     }
 
     fn missing_name(&self) -> Diagnostic {
@@ -207,7 +220,12 @@ impl Case<'_, '_> {
                 .missing("missing-name", "a name")
                 .hint("each parameter has a type and a name: `module A(float x, int n)`");
         }
-        self.missing("missing-name", "a name or a value")
+        let fault = self.missing("missing-name", "a name or a value");
+        let before = self.at.checked_sub(1).map_or("", |i| self.word(i));
+        if self.word(self.at) == "[" && matches!(before, "=" | "return") {
+            return fault.hint("an array is written in braces: `float[] a = {1, 2, 3};`");
+        }
+        fault
     }
 
     /// A keyword where a name should stand.

@@ -203,7 +203,20 @@ impl Case<'_, '_> {
             );
             return Some(diagnostic.hint("write `==>`, `==>>` or `::>`"));
         }
+        let first = self.first_word();
+        if let Some(before) = self.at.checked_sub(1).filter(|&i| self.word(i) == "not") {
+            let message = "`not` is no word of the language";
+            let diagnostic = self.error("wrong-word", self.span(before), message);
+            return Some(diagnostic.hint("write `!`"));
+        }
+        if matches!(first, "elif" | "elsif" | "elseif") && self.unit != Unit::Item {
+            let span = self.span(self.tokens.start);
+            let message = format!("`{first}` is no word of the language");
+            let diagnostic = self.error("wrong-word", span, message);
+            return Some(diagnostic.hint("write `else if`"));
+        }
         let hint = match found {
+            "in" if first == "for" => "write `:`, as in `for (int i : 1:3)`",
             "and" => "write `&&`",
             "or" => "write `||`",
             "then" => "leave it out",
@@ -218,6 +231,46 @@ impl Case<'_, '_> {
             )
             .hint(hint),
         )
+    }
+
+    /// `(* Leaf )`: the query is not closed.
+    pub(super) fn unclosed_query(&self) -> Option<Diagnostic> {
+        let open = (self.tokens.start..self.at)
+            .rev()
+            .find(|&i| self.opens_query(i))?;
+        let close = self.cutter.brackets.behind(open).checked_sub(1)?;
+        let is_open = self.at <= close && self.word(close) == ")" && self.word(close - 1) != "*";
+        is_open.then(|| {
+            self.error(
+                "unclosed-query",
+                self.span(open),
+                "this query is never closed",
+            )
+            .label("its `*)` is missing")
+            .also(self.span(close), "expected `*)` here")
+        })
+    }
+
+    fn opens_query(&self, i: usize) -> bool {
+        self.word(i) == "(*" || (self.word(i) == "(" && self.word(i + 1) == "*")
+    }
+
+    /// `(* l:Leaf, l[size] > 1 *)`, `A(x), x > 3 ==> B;`: a condition without parentheses.
+    pub(super) fn bare_condition(&self) -> Option<Diagnostic> {
+        const COMPARISONS: [&str; 9] = [">", "<", ">=", "<=", "==", "!=", "&&", "||", "!"];
+        let in_query = (self.tokens.start..self.at)
+            .any(|i| self.opens_query(i) && self.cutter.brackets.behind(i) > self.at);
+        let on_left = self.unit == Unit::RuleItem
+            && self
+                .cutter
+                .find(self.at, self.tokens.end, &ARROWS)
+                .is_some();
+        let is_bare = COMPARISONS.contains(&self.word(self.at)) && (in_query || on_left);
+        is_bare.then(|| {
+            let message = format!("unexpected `{}`", self.word(self.at));
+            self.error("bare-condition", self.span(self.at), message)
+                .hint("a condition stands in parentheses, behind a comma: `x:A, (x[n] > 4)`")
+        })
     }
 
     /// `A(x) (x > 4) ==> B;`: the comma before a condition is missing.

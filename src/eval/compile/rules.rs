@@ -17,6 +17,8 @@ use crate::rewrite::{self, Assignment, DeferredValue, MatchEnv, Plan, ScratchPoo
 
 /// A pattern whose expressions are compiled.
 pub(super) struct CompiledPattern {
+    /// What it is a pattern of, in words.
+    role: &'static str,
     pub(super) pattern: Pattern<PatternCode>,
     pub(super) plan: Plan,
     binders: Vec<Binder>,
@@ -36,7 +38,7 @@ type Binder = Box<dyn Fn(&mut Machine, NodeId, FieldId) -> Result<(), Trap> + Se
 
 impl Scope<'_> {
     /// Compiles a pattern. Slots of labels become offsets of words, slots of parameters become numbers of binders.
-    pub(super) fn pattern(&self, pattern: &Pattern<Expr>) -> CompiledPattern {
+    pub(super) fn pattern(&self, role: &'static str, pattern: &Pattern<Expr>) -> CompiledPattern {
         let mut binders = vec![];
         let nodes = pattern
             .nodes
@@ -61,6 +63,7 @@ impl Scope<'_> {
             span: pattern.span,
         };
         CompiledPattern {
+            role,
             plan: Plan::new(&pattern),
             pattern,
             binders,
@@ -136,7 +139,7 @@ impl Scope<'_> {
 
     /// A rule: all its matches are found and applied to the queue.
     pub(super) fn rule(&self, rule: &Rule) -> Exec {
-        let compiled = self.pattern(&rule.pattern);
+        let compiled = self.pattern("rule", &rule.pattern);
         let (arrow, span) = (rule.arrow, rule.span);
         let plain = self.plain_rule(rule);
         let body = match &rule.exec {
@@ -153,7 +156,9 @@ impl Scope<'_> {
                 program,
                 machine,
                 compiled: &compiled,
+                tried: None,
             };
+            let mut is_applied = false;
             rewrite::search(
                 &compiled.pattern,
                 &compiled.plan,
@@ -161,11 +166,12 @@ impl Scope<'_> {
                 &mut env,
                 &mut |env, found| {
                     env.machine.tick(span)?;
+                    is_applied = true;
                     let nodes = found.nodes();
                     if let Some(plain) = plain
                         && plain
                             .note(program, env.machine, nodes)
-                            .map_err(|trap| note_match(trap, env.machine, nodes, span))?
+                            .map_err(|trap| env.note_match(trap, nodes, span))?
                     {
                         return Ok(rewrite::Flow::Continue);
                     }
@@ -179,7 +185,7 @@ impl Scope<'_> {
                     }
                     let flow = env
                         .apply(arrow, nodes, &body)
-                        .map_err(|trap| note_match(trap, env.machine, nodes, span))?;
+                        .map_err(|trap| env.note_match(trap, nodes, span))?;
                     Ok(match flow {
                         Flow::Next | Flow::Continue(Label::Innermost) => mode.after_match(),
                         Flow::Break(Label::Innermost) => rewrite::Flow::Stop,
@@ -190,6 +196,9 @@ impl Scope<'_> {
                     })
                 },
             )?;
+            if is_applied {
+                machine.note_rule(span);
+            }
             Ok(left_by)
         })
     }
@@ -248,23 +257,56 @@ fn bind<T: Access>(at: u32) -> Binder {
     })
 }
 
-#[cold]
-fn note_match(trap: Trap, machine: &Machine, nodes: &[NodeId], span: Span) -> Trap {
-    let node = nodes.first().map(|&node| machine.node_name(node));
-    trap.at(span).noting(span, || match node {
-        Some(node) => format!("while this rule was applied to {node}"),
-        None => "while this rule was applied".to_owned(),
-    })
-}
-
 /// What a search needs of the machine.
 pub(super) struct Env<'a> {
     pub(super) program: &'a Program,
     pub(super) machine: &'a mut Machine,
     pub(super) compiled: &'a CompiledPattern,
+    /// The node that was looked at last.
+    pub(super) tried: Option<NodeId>,
 }
 
 impl Env<'_> {
+    /// What was being done when the rule at `span` failed for a match.
+    #[cold]
+    fn note_match(&self, trap: Trap, nodes: &[NodeId], span: Span) -> Trap {
+        let of_pattern = self.compiled.pattern.nodes.iter().zip(nodes);
+        let mut replaced = of_pattern.filter(|(node, _)| !node.is_context);
+        let node = replaced.next().map(|(_, node)| node).or(nodes.first());
+        let to = node.map_or(String::new(), |&node| {
+            format!(" to {}", self.machine.graph.node_text(node))
+        });
+        trap.at(span).noting(span, "in this rule").during(
+            format!("while applying the rule at {{place}}{to}"),
+            Some(span),
+        )
+    }
+
+    /// What was being done when a condition or a parameter of the pattern failed.
+    #[cold]
+    fn note_search(&self, trap: Trap) -> Trap {
+        let (role, span) = (self.compiled.role, self.compiled.pattern.span);
+        let at = self.tried.map_or(String::new(), |node| {
+            format!(", trying {}", self.machine.graph.node_text(node))
+        });
+        trap.during(
+            format!("while matching the {role} at {{place}}{at}"),
+            Some(span),
+        )
+    }
+
+    /// What was being done when something failed for a match of a query.
+    #[cold]
+    pub(super) fn note_found(&self, trap: Trap, node: Option<NodeId>) -> Trap {
+        let node = node.map_or("nothing".to_owned(), |node| {
+            self.machine.graph.node_text(node)
+        });
+        trap.during(
+            format!("for {node}, found by the query at {{place}}"),
+            Some(self.compiled.pattern.span),
+        )
+    }
+
     fn admit(&mut self, mode: rewrite::Mode) -> bool {
         let Machine {
             queue,
@@ -319,10 +361,12 @@ impl MatchEnv<PatternCode> for Env<'_> {
     }
 
     fn bind_node(&mut self, slot: u16, node: Option<NodeId>) {
+        self.tried = node.or(self.tried);
         node.store(&mut self.machine.stack, u32::from(slot));
     }
 
     fn bind_field(&mut self, slot: u16, node: NodeId, field: FieldId) -> Result<(), Trap> {
+        self.tried = Some(node);
         (self.compiled.binders[usize::from(slot)])(self.machine, node, field)
     }
 
@@ -333,7 +377,10 @@ impl MatchEnv<PatternCode> for Env<'_> {
         value: &PatternCode,
     ) -> Result<bool, Trap> {
         match value {
-            PatternCode::Equal(test) => test(self.program, self.machine, node, field),
+            PatternCode::Equal(test) => {
+                self.tried = Some(node);
+                test(self.program, self.machine, node, field).map_err(|trap| self.note_search(trap))
+            }
             PatternCode::Condition(_) | PatternCode::Node(_) => Ok(false),
         }
     }
@@ -342,7 +389,9 @@ impl MatchEnv<PatternCode> for Env<'_> {
         match condition {
             PatternCode::Condition(source) => {
                 self.machine.tick(self.compiled.pattern.span)?;
-                source.get(self.program, self.machine)
+                source
+                    .get(self.program, self.machine)
+                    .map_err(|trap| self.note_search(trap))
             }
             PatternCode::Equal(_) | PatternCode::Node(_) => Ok(false),
         }
@@ -350,7 +399,9 @@ impl MatchEnv<PatternCode> for Env<'_> {
 
     fn node_value(&mut self, value: &PatternCode) -> Result<Option<NodeId>, Trap> {
         match value {
-            PatternCode::Node(source) => source.get(self.program, self.machine),
+            PatternCode::Node(source) => source
+                .get(self.program, self.machine)
+                .map_err(|trap| self.note_search(trap)),
             PatternCode::Equal(_) | PatternCode::Condition(_) => Ok(None),
         }
     }

@@ -73,13 +73,14 @@ impl Scope<'_> {
         result: usize,
         at: Option<u32>,
     ) -> Iterate {
-        let (compiled, span): (CompiledPattern, _) = (self.pattern(pattern), pattern.span);
+        let (compiled, span): (CompiledPattern, _) = (self.pattern("query", pattern), pattern.span);
         Box::new(move |program, machine, visit| {
             let mut turn = Turn::Next;
             let mut env = Env {
                 program,
                 machine,
                 compiled: &compiled,
+                tried: None,
             };
             rewrite::search(
                 &compiled.pattern,
@@ -91,7 +92,8 @@ impl Scope<'_> {
                         found.node(result).store(&mut env.machine.stack, at);
                     }
                     env.machine.tick(span)?;
-                    turn = visit(env.program, env.machine)?;
+                    turn = visit(env.program, env.machine)
+                        .map_err(|trap| env.note_found(trap, found.node(result)))?;
                     Ok(if turn == Turn::Next {
                         rewrite::Flow::Continue
                     } else {

@@ -61,7 +61,7 @@ pub(super) fn reset(cx: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
     cx.machine
         .clear(cx.program)
         .map_err(|trap| trap.at(cx.span))?;
-    cx.program.run_init(cx.machine, cx.span)?;
+    cx.program.run_init(cx.machine)?;
     Ok(Value::Null)
 }
 
