@@ -354,6 +354,166 @@ const STATEMENTS: &[(&str, &str)] = &[
     ),
 ];
 
+/// What the library of Java tells of texts, numbers and arrays; what JDK 17 prints for the same statements.
+const LIBRARY: &[(&str, &str)] = &[
+    (
+        "println(String.format(\"%2$s %1$s\", \"a\", \"b\") + String.format(\"|%,d|%+.1f|%e|%g|%b|%c|%o\", 1234567, 2.25, 12345.678, 0.00012345, true, 'z', 8));",
+        "b a|1,234,567|+2.3|1.234568e+04|0.000123450|true|z|10",
+    ),
+    (
+        "println(String.format(\"%.2f %.2f %.0f %08.2f|%-7.1f|%(.1f\", 1.005, 0.125, 2.5, -3.14159, 2.0f, -1.5));",
+        "1.01 0.13 3 -0003.14|2.0    |(1.5)",
+    ),
+    (
+        "System.out.printf(\"%d %s%n\", 3L, null); System.out.printf(Locale.US, \"%.1f\", 0.25);",
+        "3 null\n0.3",
+    ),
+    (
+        "StringBuilder b = new StringBuilder(\"abc\"); b.append(1).insert(1, 2.5f).reverse(); b.setCharAt(0, 'x'); b.deleteCharAt(1).delete(1, 2).replace(0, 1, \"zz\"); println(b + \" \" + b.length() + b.charAt(1) + b.indexOf(\"2\") + b.substring(2));",
+        "zz5.2a 6z45.2a",
+    ),
+    (
+        "int[] a = {3, 1, 2}; int[] b = a.clone(); Arrays.sort(b); b[0] = 9; println(Arrays.toString(a) + Arrays.toString(b) + Arrays.toString(Arrays.copyOf(a, 5)) + Arrays.toString(Arrays.copyOfRange(a, 1, 2)) + Arrays.equals(a, b) + Arrays.hashCode(a));",
+        "[3, 1, 2][9, 2, 3][3, 1, 2, 0, 0][1]false32707",
+    ),
+    (
+        "int[] a = {1, 2, 3, 4}; System.arraycopy(a, 0, a, 1, 3); println(Arrays.toString(a)); Arrays.fill(a, 1, 3, 7); println(Arrays.toString(a) + Arrays.binarySearch(new int[] {1, 3, 5}, 4)); println(Arrays.deepToString(new int[][] {{1}, {2, 3}}));",
+        "[1, 1, 2, 3]\n[1, 7, 7, 3]-3\n[[1], [2, 3]]",
+    ),
+    (
+        "println(Integer.compare(3, 1) + Integer.toString(-255, 16) + Integer.parseInt(\"-ff\", 16) + Integer.bitCount(255) + Long.toHexString(-1L) + Integer.toOctalString(9));",
+        "1-ff-2558ffffffffffffffff11",
+    ),
+    (
+        "println(Double.compare(0.0, -0.0) + \" \" + Double.compare(0.0 / 0, 1 / 0.0) + \" \" + Double.doubleToLongBits(1.5) + \" \" + Float.floatToIntBits(1f) + \" \" + Math.ulp(1.0) + \" \" + Math.IEEEremainder(5, 3) + \" \" + Math.floorMod(-7L, 3L));",
+        "1 1 4609434218613702656 1065353216 2.220446049250313E-16 -1.0 2",
+    ),
+    (
+        "try { Math.addExact(2147483647, 1); } catch (ArithmeticException e) { println(e.getMessage()); } try { Math.toIntExact(1L << 40); } catch (ArithmeticException e) { println(e); }",
+        "integer overflow\njava.lang.ArithmeticException: integer overflow",
+    ),
+    (
+        "println(String.join(\"-\", \"a\", \"b\") + \"ab\".repeat(2) + \" x \".strip() + \" \".isBlank() + \"a,b,c\".split(\",\", 2)[1] + \"a,,\".split(\",\", -1).length + String.valueOf(new char[] {'o', 'k'}) + Character.toUpperCase('q') + Character.getNumericValue('7'));",
+        "a-bababxtrueb,c3okQ7",
+    ),
+    (
+        "ArrayList<Float> l = new ArrayList<Float>(); l.add(1f); l.add(2); float s = 0; for (float f : l) s += f; s += l.get(1); println(s + \" \" + l + l.contains(2f) + l.indexOf(2f));",
+        "5.0 [1.0, 2.0]true1",
+    ),
+    (
+        "HashMap<String, Integer> m = new HashMap<String, Integer>(); m.put(\"a\", 1); m.put(\"b\", 2); int s = 0; for (Map.Entry<String, Integer> e : m.entrySet()) { s += e.getValue(); e.setValue(s); print(e.getKey()); } println(s + \" \" + m + m.putIfAbsent(\"a\", 9) + m.equals(new HashMap(m)));",
+        "ab3 {a=1, b=3}1true",
+    ),
+    (
+        "TreeMap<String, Double> t = new TreeMap<String, Double>(); t.put(\"z\", 1.0); t.put(\"a\", 2.0); println(t + t.firstKey() + t.lastKey()); TreeSet s = new TreeSet(); s.add(3); s.add(1); println(s + \"\" + s.first());",
+        "{a=2.0, z=1.0}az\n[1, 3]1",
+    ),
+    (
+        "LinkedList<Integer> l = new LinkedList<Integer>(); l.add(1); l.push(2); l.offer(3); println(l.peek() + l.poll() + l.pollLast() + \" \" + l + l.pop() + l.poll()); Stack<String> s = new Stack<String>(); s.push(\"a\"); s.push(\"b\"); println(s.search(\"a\") + s.peek());",
+        "7 [1]1null\n2b",
+    ),
+    (
+        "ArrayList<Integer> l = new ArrayList<Integer>(Arrays.asList(1, 2, 3, 4)); Iterator<Integer> i = l.iterator(); while (i.hasNext()) if (i.next() % 2 == 0) i.remove(); println(l + \"\" + l.subList(0, 1) + l.addAll(1, l) + l + l.lastIndexOf(3)); l.removeAll(Arrays.asList(3)); println(l + \" \" + l.toArray().length);",
+        "[1, 3][1]true[1, 1, 3, 3]3\n[1, 1] 2",
+    ),
+    (
+        "println(new Date(0) + \" \" + new SimpleDateFormat(\"yyyy-MM-dd HH:mm\").format(new Date(951825599000L)) + \" \" + new DecimalFormat(\"0.0#\").format(3.14159));",
+        "Thu Jan 01 00:00:00 UTC 1970 2000-02-29 11:59 3.14",
+    ),
+    (
+        "Object o = new int[2]; println(\"s\".getClass().getName() + \" \" + new ArrayList().getClass().getSimpleName()); Object[] all = new String[] {\"x\"}; println(all[0]); assert all == null : \"never looked at\"; synchronized (o) { println(Objects.equals(null, null)); }",
+        "java.lang.String ArrayList\nx\ntrue",
+    ),
+];
+
+#[test]
+fn the_library_answers_as_javas_does() {
+    for (body, expected) in LIBRARY {
+        let found = printed(body).unwrap_or_else(|fault| panic!("{body}: {fault}"));
+        assert_eq!(found.trim_end(), *expected, "{body}");
+    }
+}
+
+/// Methods that Java calls by itself, enumerations, interfaces with constants, and the model as an object.
+const OWN_METHODS: &str = r#"
+enum Stage { SEED, LEAF(2.5), DEAD(0); double w; Stage() { w = 9; } Stage(double w) { this.w = w; } double twice() { return 2 * w; } }
+Stage now = Stage.SEED;
+interface Rated { int BASE = 7; int rate(); }
+class Item implements Comparable, Rated {
+	int v; Item(int v) { this.v = v; }
+	public String toString() { return "I" + v; }
+	public boolean equals(Object o) { return o instanceof Item && ((Item) o).v == v; }
+	public int hashCode() { return v; }
+	public int compareTo(Object o) { return v - ((Item) o).v; }
+	int rate() { return BASE + v; }
+}
+class Down implements Comparator { public int compare(Object a, Object b) { return ((Item) b).v - ((Item) a).v; } }
+class Box<T> { T held; Box(T held) { this.held = held; } T get() { return held; } }
+class Log { void close() { println("closed"); } }
+module Leaf(int n) { String toString() { return "leaf " + n; } }
+int day = 3;
+protected void startup() { super.startup(); day = 4; println("startup"); }
+int twice(int day) { return 2 * this.day; }
+protected void init() {
+	Object o = new Item(3);
+	println(o.toString() + o + o.equals(new Item(3)) + o.hashCode() + String.valueOf(o) + String.format("%s", o));
+	ArrayList l = new ArrayList(); l.add(o); l.add(new Item(1)); l.add(new Leaf(5));
+	println(l + " " + l.indexOf(new Item(1)) + l.contains(new Item(2)));
+	l.remove(2); Collections.sort(l); print(l); Collections.sort(l, new Down()); print(l); Collections.sort(l, Collections.reverseOrder().reversed()); println(l);
+	HashMap m = new HashMap(); m.put(o, "x"); m.put(new Item(3), "y"); println(m + "" + m.get(new Item(3)) + m.containsKey(new Item(4)));
+	Item[] a = {new Item(5), new Item(2)}; Arrays.sort(a); println(Arrays.toString(a) + Collections.max(l));
+	println(now + " " + Stage.LEAF.twice() + Stage.SEED.w + Stage.valueOf("DEAD").ordinal() + Stage.values().length + now.compareTo(Stage.DEAD) + (now == Stage.SEED));
+	switch (now) { case LEAF: println("leaf"); break; case SEED: println("seed"); break; default: println("?"); }
+	Rated r = new Item(1); println(r.rate() + Rated.BASE);
+	println(new Box<String>("b").get() + " " + model.INSTANCE.day + INSTANCE.twice(1) + this.day);
+	try (Log one = new Log()) { println("in"); throw new RuntimeException("r"); } catch (Exception e) { println(e.getMessage()); }
+	try { Stage.valueOf("X"); } catch (IllegalArgumentException e) { println(e.getMessage()); }
+	ArrayList bad = new ArrayList(); bad.add(new Leaf(1)); bad.add(new Leaf(2));
+	try { Collections.sort(bad); } catch (ClassCastException e) { println("no order"); }
+	[ Axiom ==> Leaf(1) [Leaf(2)] Leaf(3); ]
+	derive();
+	Leaf first = first((* Leaf *));
+	println(first.getSuccessor() + "; " + first.getBranch() + "; " + first.getDirectChildCount() + (first.getSuccessor().getPredecessor() == first) + first.isAncestorOf(first.getBranch()) + first.getClass().getSimpleName());
+}
+"#;
+
+#[test]
+fn methods_of_the_model_are_called_by_the_library() {
+    let expected = "startup\nI3I3true3I3I3\n[I3, I1, leaf 5] 1false\n[I1, I3][I3, I1][I1, I3]\n{I3=y}yfalse\n[I2, I5]I3\n\
+                    SEED 5.09.023-2true\nseed\n15\nb 484\nin\nclosed\nr\nNo enum constant Stage.X\nno order\n\
+                    leaf 3; leaf 2; 2truetrueLeaf\n";
+    assert_eq!(printed_by(OWN_METHODS).unwrap(), expected);
+}
+
+/// What a collection was declared to hold is checked where the text can be, and where it cannot when it is taken out.
+#[test]
+fn type_arguments_are_checked() {
+    let slips = [
+        (
+            "ArrayList<Float> l = new ArrayList<Float>(); l.add(\"x\");",
+            "expected `Float`, found `String`",
+        ),
+        (
+            "ArrayList<Float> l = new ArrayList<Float>(); String s = l.get(0);",
+            "expected `String`, found `Float`",
+        ),
+        (
+            "ArrayList<int> l;",
+            "a collection cannot hold the plain type `int`",
+        ),
+        (
+            "ArrayList<Float> l = new ArrayList<String>();",
+            "expected `ArrayList<Float>`, found `ArrayList<String>`",
+        ),
+    ];
+    for (slip, expected) in slips {
+        let fault = printed(slip).expect_err(slip);
+        assert!(fault.contains(expected), "{slip}: {fault}");
+    }
+    let late = "ArrayList<Float> l = new ArrayList<Float>(); ArrayList raw = l; raw.add(\"x\"); float f = l.get(0);";
+    assert!(printed(late).unwrap_err().contains("is no Float"));
+}
+
 #[test]
 fn collections_print_what_java_prints() {
     for (body, expected) in STATEMENTS {

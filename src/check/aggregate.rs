@@ -223,8 +223,15 @@ impl Checker<'_> {
         }
         Some(match &ty {
             Type::Array(element) => ((Sequence::Elements(Box::new(value))), (**element).clone()),
-            Type::Class(class) if class.is_a(ClassId::Collection) => {
-                (Sequence::List(Box::new(value)), Type::Object)
+            _ if ty
+                .class()
+                .is_some_and(|class| class.is_a(ClassId::Collection)) =>
+            {
+                let list = Sequence::List(Box::new(value));
+                match ty.argument(0) {
+                    Type::Object => (list, Type::Object),
+                    element => (self.opened(list, &element, e.span), element),
+                }
             }
             _ => (Sequence::One(Box::new(value)), ty),
         })

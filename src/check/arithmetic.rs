@@ -236,12 +236,12 @@ impl Checker<'_> {
             let found: &[MethodId] = lineage.find(|found| !found.is_empty()).unwrap_or_default();
             let overloads: Vec<_> = found
                 .iter()
-                .map(|&id| Overload::of_signature(id, id.signature(), self))
+                .map(|&id| Overload::of_signature(id, id.signature(), self, None))
                 .collect();
             let args = vec![arg];
             if self.any_takes(&overloads, &args) {
                 let (id, args) = self.choose(sign(op), span, &overloads, args)?;
-                let ty = id.signature().result.to_type(self.node);
+                let ty = id.signature().result.to_type(self.node, Some(&object.ty));
                 return Some(Expr {
                     kind: ExprKind::LibraryMethod(id, Box::new(object), args),
                     ty,

@@ -6,6 +6,9 @@ use super::declaration::{MethodInfo, MethodSource};
 use super::model::{Method, MethodId, Model, StaticId, Type};
 use crate::diag::Diagnostic;
 
+/// `startup`, `init`, and the methods that can be called by name.
+type Entries = (Option<MethodId>, Option<MethodId>, Vec<(String, MethodId)>);
+
 impl Checker<'_> {
     /// Checks all bodies and puts the model together.
     pub(super) fn bodies(&mut self) -> Model {
@@ -22,13 +25,14 @@ impl Checker<'_> {
         let with_interfaces = ids.iter().map(|&id| (id, self.interfaces_of(id)));
         let interfaces = with_interfaces.filter(|(_, all)| !all.is_empty()).collect();
         let types = std::mem::take(&mut self.types);
-        let (init, entries) = self.entries();
+        let (startup, init, entries) = self.entries();
         Model {
             types,
             interfaces,
             modules,
             methods,
             statics,
+            startup,
             init,
             entries,
             made_at: std::mem::take(&mut self.made_at),
@@ -143,8 +147,8 @@ impl Checker<'_> {
     }
 
     /// `init`, and the methods that can be called by name.
-    fn entries(&self) -> (Option<MethodId>, Vec<(String, MethodId)>) {
-        let (mut init, mut entries) = (None, vec![]);
+    fn entries(&self) -> Entries {
+        let (mut startup, mut init, mut entries) = (None, None, vec![]);
         for (index, method) in self.methods.iter().enumerate() {
             let MethodSource::Written(written) = method.source else {
                 continue;
@@ -164,10 +168,12 @@ impl Checker<'_> {
             let id = MethodId(index as u32);
             if method.name == "init" {
                 init = init.or(Some(id));
+            } else if method.name == "startup" {
+                startup = startup.or(Some(id));
             } else if !entries.iter().any(|(name, _)| name == method.name) {
                 entries.push((method.name.to_owned(), id));
             }
         }
-        (init, entries)
+        (startup, init, entries)
     }
 }

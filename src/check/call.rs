@@ -7,7 +7,7 @@ use super::overload::{Overload, Wanted};
 use super::setter::Accessor;
 use crate::diag::{Diagnostic, Span};
 use crate::graph::TypeId;
-use crate::library::{self, ClassId, FunctionId};
+use crate::library::{self, ClassId, FunctionId, ValueType};
 use crate::syntax::ast;
 
 /// What can be called.
@@ -152,9 +152,13 @@ impl Checker<'_> {
     }
 
     fn function_overloads(&self, owner: &str, name: &str) -> Vec<Overload<Callee>> {
-        let owner = if owner == "Library" { "" } else { owner };
+        let owner = match owner {
+            "Library" => "",
+            "StrictMath" => "Math",
+            owner => owner,
+        };
         let all = library::functions_named(owner, name).iter();
-        all.map(|&id| Overload::of_signature(Callee::Function(id), id.signature(), self))
+        all.map(|&id| Overload::of_signature(Callee::Function(id), id.signature(), self, None))
             .collect()
     }
 
@@ -176,6 +180,9 @@ impl Checker<'_> {
         let mut owners: Vec<&'static str> = vec![];
         match ty {
             Type::Node(id) | Type::Instance(id) => {
+                if matches!(ty, Type::Node(_)) {
+                    owners.push("Node");
+                }
                 let mut lineage: Vec<TypeId> =
                     std::iter::successors(Some(*id), |t| self.types[*t].parent).collect();
                 lineage.extend(self.interfaces_of(*id));
@@ -195,9 +202,12 @@ impl Checker<'_> {
                     found.extend(self.accessor_overloads(*id, name));
                 }
             }
-            Type::Class(class) => owners.extend(class.lineage().map(ClassId::name)),
+            Type::Class(class) | Type::Generic(class, _) => {
+                owners.extend(class.lineage().map(ClassId::name));
+            }
             Type::String => owners.push("String"),
-            Type::Object | Type::Array(_) => {}
+            Type::Array(_) => owners.push("Array"),
+            Type::Object => {}
             _ => return found,
         }
         owners.push("Object");
@@ -205,9 +215,9 @@ impl Checker<'_> {
             let all = library::methods_named(owner, name)
                 .iter()
                 .filter(|m| !m.is_hidden());
-            found.extend(
-                all.map(|&id| Overload::of_signature(Callee::Library(id), id.signature(), self)),
-            );
+            found.extend(all.map(|&id| {
+                Overload::of_signature(Callee::Library(id), id.signature(), self, Some(ty))
+            }));
         }
         found
     }
@@ -226,6 +236,15 @@ impl Checker<'_> {
             return self.call_static(&owner, object.span, member, args, span);
         }
         let is_super = matches!(object.kind, ast::ExprKind::Super);
+        if is_super && self.cx.owner.is_none() && ["startup", "shutdown", "init"].contains(&name) {
+            // What GroIMP itself does there is not for the model to see.
+            self.exprs(args)?;
+            return Some(Expr {
+                kind: ExprKind::Comma(vec![]),
+                ty: Type::Void,
+                span,
+            });
+        }
         let (object, args) = if is_super {
             let this = self.this_type(object.span)?;
             let this = self.parent_value(this, object.span);
@@ -292,22 +311,16 @@ impl Checker<'_> {
             Callee::Accessor(accessor) => self.apply_accessor(receiver?, accessor, args, span),
             Callee::Function(id) => {
                 self.note_effect(id.signature().effect);
-                let ty = id.signature().result.to_type(self.node);
-                Some(Expr {
-                    kind: ExprKind::Library(id, args),
-                    ty,
-                    span,
-                })
+                let result = id.signature().result;
+                let ty = result.to_type(self.node, args.first().map(|arg| &arg.ty));
+                Some(element_of(ExprKind::Library(id, args), ty, result, span))
             }
             Callee::Library(id) => {
                 let (receiver, row) = (receiver?, id.signature());
                 self.note_method_effect(&receiver, row.effect);
-                let ty = row.result.to_type(self.node);
-                Some(Expr {
-                    kind: ExprKind::LibraryMethod(id, Box::new(receiver), args),
-                    ty,
-                    span,
-                })
+                let ty = row.result.to_type(self.node, Some(&receiver.ty));
+                let kind = ExprKind::LibraryMethod(id, Box::new(receiver), args);
+                Some(element_of(kind, ty, row.result, span))
             }
             Callee::Method(id) => self.apply_method(id, receiver, args, is_virtual, span),
         }
@@ -343,5 +356,21 @@ impl Checker<'_> {
             ty: result?,
             span,
         })
+    }
+}
+
+/// The value of a call; what comes out of a collection is checked to be of the type that the collection was declared with.
+fn element_of(kind: ExprKind, ty: Type, result: ValueType, span: Span) -> Expr {
+    let is_element = matches!(result, ValueType::Argument(_)) && ty != Type::Object;
+    let inner = Expr {
+        kind,
+        ty: if is_element { Type::Object } else { ty.clone() },
+        span,
+    };
+    if is_element {
+        let kind = ExprKind::Cast(Box::new(inner));
+        Expr { kind, ty, span }
+    } else {
+        inner
     }
 }

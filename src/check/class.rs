@@ -7,6 +7,7 @@ use super::Checker;
 use super::SourceModel;
 use super::context::Body;
 use super::declaration::MethodSource;
+use super::enumeration;
 use super::model::{Expr, ExprKind, MethodId, NewNode, Place, Slot, Stmt, StmtKind, Type};
 use super::overload::{Overload, Wanted};
 use crate::diag::{Diagnostic, Span};
@@ -20,8 +21,12 @@ pub(super) struct Declared {
     pub(super) file: usize,
     /// Its fields, methods and parent.
     pub(super) module: ast::Module,
+    /// `<T>`
+    pub(super) type_params: Vec<String>,
     /// Whether it is an interface.
     pub(super) is_interface: bool,
+    /// Whether it is an enumeration.
+    pub(super) is_enumeration: bool,
 }
 
 /// What is known of a class besides what modules have too.
@@ -45,11 +50,13 @@ pub(super) fn collect(files: &[SourceModel]) -> Vec<Declared> {
 fn collect_items(items: &[ast::Item], file: usize, found: &mut Vec<Declared>) {
     for item in items {
         match item {
-            ast::Item::Class(class) if class.keyword.name != "enum" => {
+            ast::Item::Class(class) => {
                 found.push(Declared {
                     file,
                     module: as_module(class),
+                    type_params: class.type_params.iter().map(|p| p.name.clone()).collect(),
                     is_interface: class.keyword.name == "interface",
+                    is_enumeration: class.keyword.name == "enum",
                 });
                 collect_items(&class.members, file, found);
             }
@@ -81,10 +88,24 @@ fn as_module(class: &ast::Class) -> ast::Module {
             with: vec![],
         }),
         implements,
-        members: class.members.clone(),
+        members: match class.keyword.name.as_str() {
+            "enum" => enumeration::members(class),
+            "interface" => class.members.iter().map(of_interface).collect(),
+            _ => class.members.clone(),
+        },
         instantiation: None,
         span: class.span,
     }
+}
+
+/// A member of an interface: its fields are constants.
+fn of_interface(item: &ast::Item) -> ast::Item {
+    let mut item = item.clone();
+    if let ast::Item::Field(field) = &mut item {
+        field.modifiers.is_static = true;
+        field.modifiers.is_final = true;
+    }
+    item
 }
 
 impl Checker<'_> {
@@ -159,6 +180,20 @@ impl Checker<'_> {
             }
         }
         found
+    }
+
+    /// Whether a type, or one that it extends or implements, is said to implement an interface of the library.
+    pub(super) fn implements_library(&self, id: TypeId, wanted: ClassId) -> bool {
+        let mut all: Vec<TypeId> =
+            std::iter::successors(Some(id), |&t| self.types[t].parent).collect();
+        all.extend(self.interfaces_of(id));
+        all.into_iter().any(|id| {
+            let index = usize::from(id.0).checked_sub(self.n_builtin);
+            let module = index.and_then(|index| self.modules.get(index));
+            let names = module.map_or(&[][..], |module| &module.ast.implements);
+            let mut last = names.iter().filter_map(|name| name.path.last());
+            last.any(|name| ClassId::named(&name.name) == Some(wanted))
+        })
     }
 
     /// The library class that a class extends by name; reported if it cannot be extended.

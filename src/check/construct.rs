@@ -30,7 +30,11 @@ impl Checker<'_> {
 
     /// `new String(…)`.
     pub(super) fn new_string(&mut self, args: Vec<Expr>, span: Span) -> Option<Expr> {
-        let all = [ConstructorId::String, ConstructorId::StringCopy];
+        let all = [
+            ConstructorId::String,
+            ConstructorId::StringCopy,
+            ConstructorId::StringOfChars,
+        ];
         let (id, args) = self.choose_constructor("String", &all, args, span)?;
         Some(Expr {
             kind: ExprKind::NewObject(id, args),
@@ -48,7 +52,7 @@ impl Checker<'_> {
     ) -> Option<(ConstructorId, Vec<Expr>)> {
         let overloads: Vec<_> = all
             .iter()
-            .map(|&id| Overload::of_signature(id, id.signature(), self))
+            .map(|&id| Overload::of_signature(id, id.signature(), self, None))
             .collect();
         let (id, args) = self.choose(name, span, &overloads, args)?;
         self.note_effect(id.signature().effect);

@@ -69,9 +69,17 @@ pub(super) fn own_fields(
 impl<'a> Checker<'a> {
     /// Declares everything of all files.
     pub(super) fn declare(&mut self) {
-        self.refuse_enums();
         self.declare_modules();
         self.resolve_fields();
+        // What the variables of the files begin with may be a constant of an enumeration.
+        let classes = self.classes.iter().filter(|class| class.is_enumeration);
+        let enumerations: Vec<&str> = classes.map(|class| &*class.module.name.name).collect();
+        let is_enumeration = |module: &ModuleInfo<'_>| {
+            module.class.is_some() && enumerations.contains(&module.ast.name.name.as_str())
+        };
+        let (first, rest): (Vec<usize>, Vec<usize>) =
+            (0..self.modules.len()).partition(|&i| is_enumeration(&self.modules[i]));
+        self.declare_members(first);
         for file in self.file_order() {
             let ast = self.files[file].ast;
             self.cx.file = file;
@@ -79,14 +87,19 @@ impl<'a> Checker<'a> {
                 self.declare_member(item, None);
             }
         }
-        for module in 0..self.modules.len() {
+        self.declare_members(rest);
+        self.check_overrides();
+    }
+
+    /// Declares the members of these modules and classes.
+    fn declare_members(&mut self, modules: Vec<usize>) {
+        for module in modules {
             let (ast, owner) = (self.modules[module].ast, self.modules[module].type_id);
             self.cx.file = self.modules[module].file;
             for item in &ast.members {
                 self.declare_member(item, Some(owner));
             }
         }
-        self.check_overrides();
     }
 
     /// The files in order of initialization: as given, but what a file imports comes before it, as where Java loads classes.

@@ -198,7 +198,7 @@ impl Checker<'_> {
     pub(super) fn with(&mut self, object: Expr, body: &[ast::Stmt], span: Span) -> Option<Expr> {
         if !matches!(
             object.ty,
-            Type::Node(_) | Type::Instance(_) | Type::Class(_)
+            Type::Node(_) | Type::Instance(_) | Type::Class(_) | Type::Generic(..)
         ) {
             let message = format!(
                 "`.( … )` needs an object, found `{}`",
@@ -437,6 +437,11 @@ impl Checker<'_> {
             (Type::Node(id), args) => self.new_node(id, args, span),
             (Type::Instance(id), args) => self.new_instance(id, args, span),
             (Type::Class(class), args) => self.new_library_object(class, args, span),
+            (Type::Generic(class, of), args) => {
+                let made = self.new_library_object(class, args, span)?;
+                let ty = Type::Generic(class, of);
+                Some(Expr { ty, ..made })
+            }
             (Type::String, args) => self.new_string(args, span),
             (ty, _) => {
                 let message = format!("`{}` cannot be made with `new`", self.type_name(&ty));

@@ -31,18 +31,42 @@ pub(super) fn dotted(e: &ast::Expr) -> Option<Vec<&str>> {
 impl Checker<'_> {
     /// The class or file that the names in front of a member mean, if they mean no variable.
     pub(super) fn qualifier(&mut self, object: &ast::Expr) -> Option<String> {
+        // `this` of a file, like its `INSTANCE`, is the model itself: what follows is a variable or method of the file.
+        if matches!(object.kind, ast::ExprKind::This) && self.cx.owner.is_none() {
+            return Some(self.files.get(self.cx.file)?.name.clone());
+        }
         let names = dotted(object)?;
         if self.lookup(names[0], object.span).is_some() {
             return None;
         }
         let last = names.len() - 1;
-        if names[last] == "out" && last > 0 && names[last - 1] == "System" {
+        if names[last] == "INSTANCE" {
+            return match last.checked_sub(1) {
+                Some(before) => Some(names[before].trim().into()),
+                None => Some(self.files.get(self.cx.file)?.name.clone()),
+            };
+        }
+        // `Stage.LEAF.w`, `parameters.widths.length`: what stands in front of the last member is a value.
+        if last > 0 && self.is_static_of(names[last - 1], names[last]) {
+            return None;
+        }
+        if ["out", "err"].contains(&names[last]) && last > 0 && names[last - 1] == "System" {
             return Some("System.out".into());
         }
         if names[last] == "out" && last > 0 {
             return Some(names[last - 1..].join("."));
         }
         Some(names[last].trim().into())
+    }
+
+    /// Whether a file, module or class has a static variable of this name.
+    fn is_static_of(&self, owner: &str, name: &str) -> bool {
+        let of_file = self.file_named(owner);
+        let of_type = match self.named_type(owner) {
+            Some(Type::Node(id) | Type::Instance(id)) => self.static_of(id, name),
+            _ => None,
+        };
+        of_type.is_some() || of_file.is_some_and(|f| self.find_static(name, Some(f)).is_some())
     }
 
     /// Whether a qualifier names something: a file, a module, a class of the library.
@@ -58,7 +82,11 @@ impl Checker<'_> {
             "Library",
         ]
         .contains(&name);
-        is_owner || self.file_named(name).is_some() || self.named_type(name).is_some()
+        let has_functions = || FunctionId::ALL.iter().any(|f| f.signature().owner == name);
+        is_owner
+            || has_functions()
+            || self.file_named(name).is_some()
+            || self.named_type(name).is_some()
     }
 
     /// The file of this name.
@@ -320,7 +348,7 @@ impl Checker<'_> {
             return None;
         };
         self.cx.facts.is_impure = true;
-        let ty = id.signature().result.to_type(self.node);
+        let ty = id.signature().result.to_type(self.node, None);
         Some(Indexed::Value(Expr {
             kind: ExprKind::Library(id, vec![object]),
             ty,

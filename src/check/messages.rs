@@ -78,7 +78,9 @@ impl Checker<'_> {
             };
         }
         let lineage: Vec<&str> = match ty {
-            Type::Class(class) => class.lineage().map(ClassId::name).collect(),
+            Type::Class(class) | Type::Generic(class, _) => {
+                class.lineage().map(ClassId::name).collect()
+            }
             Type::String => vec!["String"],
             _ => vec![],
         };

@@ -19,6 +19,7 @@ mod context;
 mod declaration;
 mod declare;
 mod edge;
+mod enumeration;
 mod expr;
 mod lint;
 mod member;
@@ -130,6 +131,8 @@ struct Checker<'a> {
     assigned: BTreeSet<StaticId>,
     /// Names of types that were refused where they are declared; their uses are passed over.
     refused: HashSet<String>,
+    /// Type parameters of the model's own classes; they stand for any object.
+    type_params: HashSet<String>,
     /// Where nodes of each type are made.
     made_at: BTreeMap<TypeId, Vec<Span>>,
     /// What each body does.
@@ -166,6 +169,10 @@ impl<'a> Checker<'a> {
             static_values: HashMap::new(),
             assigned: BTreeSet::new(),
             refused: HashSet::new(),
+            type_params: classes
+                .iter()
+                .flat_map(|class| class.type_params.iter().cloned())
+                .collect(),
             made_at: BTreeMap::new(),
             facts: BTreeMap::new(),
             writes_elements: false,

@@ -36,6 +36,8 @@ pub struct Model {
     /// Fields of the files (variables of the model), all static in effect; initialized in this order. An initializer
     /// block of a file stands among them as the variable `{…}` of type `int`, which nothing reads.
     pub statics: Vec<Static>,
+    /// `startup`, if the model has one: runs once, before anything else.
+    pub startup: Option<MethodId>,
     /// `init`, if the model has one.
     pub init: Option<MethodId>,
     /// Public methods without parameters that can be stepped (`--entry`), with their names.

@@ -2,6 +2,7 @@
 
 use super::context::Layer;
 use super::model::{Constant, Expr, ExprKind, Place, Slot, StaticId, Type};
+use super::types::is_primitive;
 use super::{Checker, refuse};
 use crate::diag::{Diagnostic, Span};
 use crate::graph::{FieldId, TypeId};
@@ -33,6 +34,10 @@ impl Checker<'_> {
     pub(super) fn resolve_type(&mut self, ty: &ast::TypeRef) -> Option<Type> {
         let last = ty.path.last()?;
         let base = match self.named_type(&last.name) {
+            Some(Type::Class(class)) if !ty.args.is_empty() => {
+                let args = ty.args.iter().map(|arg| self.type_argument(arg));
+                Type::generic(class, args.collect::<Option<_>>()?)
+            }
             Some(base) => base,
             None => {
                 if !self.refused.contains(&last.name) {
@@ -44,6 +49,23 @@ impl Checker<'_> {
         };
         let base = (0..ty.dims).fold(base, |element, _| Type::Array(Box::new(element)));
         Some(base)
+    }
+
+    /// An argument of a generic type; a wildcard without a bound is `Object`.
+    fn type_argument(&mut self, ty: &ast::TypeRef) -> Option<Type> {
+        if ty.path.is_empty() {
+            return Some(Type::Object);
+        }
+        let found = self.resolve_type(ty)?;
+        if is_primitive(&found) || found == Type::Void {
+            let boxed = super::types::boxed(&found).map_or("Object", ClassId::name);
+            let name = self.type_name(&found);
+            let message = format!("a collection cannot hold the plain type `{name}`");
+            let fault = Diagnostic::error("bad-type-argument", ty.span, message);
+            self.report(fault.hint(format!("write `{boxed}`")));
+            return None;
+        }
+        Some(found)
     }
 
     /// As [`resolve_type`](Self::resolve_type), for something that holds a value: not `void`.
@@ -82,6 +104,7 @@ impl Checker<'_> {
                 (Some(id), _) => Type::Node(id),
                 (None, Some(&class)) => Type::Instance(class),
                 (None, None) if self.refused.contains(name) => return None,
+                (None, None) if self.type_params.contains(name) => Type::Object,
                 (None, None) => Type::Class(ClassId::named(name)?),
             },
         })
@@ -173,7 +196,7 @@ impl Checker<'_> {
                         .map_or(Binding::Poisoned, Binding::Target),
                 )
             }
-            Type::Class(class) => self
+            Type::Class(class) | Type::Generic(class, _) => self
                 .library_field(object, *class, name)
                 .map(Binding::Target),
             _ => None,
@@ -201,7 +224,7 @@ impl Checker<'_> {
     /// A public field of a library object as a place.
     pub(super) fn library_field(&self, object: Expr, class: ClassId, name: &str) -> Option<Target> {
         let field = library::field_named(class, name)?;
-        let ty = field.getter.signature().result.to_type(self.node);
+        let ty = field.getter.signature().result.to_type(self.node, None);
         let place = Place::Member(Box::new(object), field.getter, field.setter);
         Some(Target {
             place,
@@ -223,7 +246,7 @@ impl Checker<'_> {
         let is_own = |id: &StaticId| {
             let (at, owner) = (self.cx.owner, of(id).owner);
             at.zip(owner)
-                .is_some_and(|(at, owner)| self.types.is_a(at, owner))
+                .is_some_and(|(at, owner)| self.is_kind_of(at, owner))
         };
         let own = all.iter().copied().find(|id| is_own(id));
         let here = || {
@@ -361,6 +384,7 @@ fn constant_expr(value: ConstantValue, span: Span) -> Expr {
         ConstantValue::Long(v) => (Constant::Long(v), Type::Long),
         ConstantValue::Float(v) => (Constant::Float(v), Type::Float),
         ConstantValue::Double(v) => (Constant::Double(v), Type::Double),
+        ConstantValue::Null(class) => (Constant::Null, Type::Class(class)),
         ConstantValue::Shader(rgb) => {
             let channel = |c: u8| {
                 let kind = ExprKind::Constant(Constant::Float(f32::from(c) / 255.0));

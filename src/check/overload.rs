@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::model::{Expr, ExprKind, Type};
-use super::types::Fit;
+use super::types::{Fit, is_primitive, unboxed};
 use crate::diag::{Diagnostic, Span};
 use crate::graph::{FieldId, TypeId};
 use crate::library::{Signature, ValueType};
@@ -12,6 +12,8 @@ use std::borrow::Cow;
 #[derive(Clone, Debug)]
 pub(super) enum Wanted {
     Value(Type),
+    /// What a boxed type can hold, or such a number that can become one: `add(1)` of an `ArrayList<Float>`.
+    Boxed(Type),
     /// Anything, as its text.
     Text,
     /// Its type could not be read; anything fits.
@@ -30,17 +32,27 @@ pub(super) struct Overload<Id> {
 }
 
 impl<Id: Copy> Overload<Id> {
-    /// The row of a library table as an overload.
-    pub(super) fn of_signature(id: Id, row: &Signature, checker: &Checker<'_>) -> Self {
+    /// The row of a library table as an overload; of a method with the type of its receiver.
+    pub(super) fn of_signature(
+        id: Id,
+        row: &Signature,
+        checker: &Checker<'_>,
+        of: Option<&Type>,
+    ) -> Self {
         let params = row.params.iter().map(|param| match param {
             ValueType::Text => Wanted::Text,
-            value => Wanted::Value(value.to_type(checker.node)),
+            value => match value.to_type(checker.node, of) {
+                ty if matches!(value, ValueType::Argument(_)) && unboxed(&ty).is_some() => {
+                    Wanted::Boxed(ty)
+                }
+                ty => Wanted::Value(ty),
+            },
         });
         Self {
             id,
             params: params.collect(),
             names: row.names.iter().map(|&name| Cow::Borrowed(name)).collect(),
-            is_varargs: false,
+            is_varargs: row.params.last() == Some(&ValueType::Objects),
         }
     }
 }
@@ -119,6 +131,7 @@ impl Checker<'_> {
     fn param_fit(&self, param: &Wanted, arg: &Type) -> Option<Fit> {
         match param {
             Wanted::Value(ty) => self.fit(arg, ty),
+            Wanted::Boxed(ty) => self.fit(arg, ty).or_else(|| self.fit(arg, &unboxed(ty)?)),
             Wanted::Text if *arg == Type::Void => None,
             Wanted::Text => Some(Fit::Text),
             Wanted::Unknown => Some(Fit::Direct),
@@ -166,6 +179,13 @@ impl Checker<'_> {
         }
         let pass_one = |(param, arg): (&Wanted, Expr)| match param {
             Wanted::Value(ty) => self.convert(arg, ty),
+            Wanted::Boxed(ty) => match unboxed(ty) {
+                Some(number) if is_primitive(&arg.ty) => {
+                    let number = self.convert(arg, &number);
+                    self.convert(number, ty)
+                }
+                _ => self.convert(arg, ty),
+            },
             Wanted::Text => self.text(arg),
             Wanted::Unknown => arg,
         };
@@ -185,7 +205,7 @@ impl Checker<'_> {
         if let Some(only) = candidate.filter(|_| is_clear) {
             let mut pairs = only.params.iter().zip(args).enumerate();
             let bad = pairs.find(|(_, (param, arg))| self.param_fit(param, &arg.ty).is_none());
-            if let Some((at, (Wanted::Value(ty), arg))) = bad {
+            if let Some((at, (Wanted::Value(ty) | Wanted::Boxed(ty), arg))) = bad {
                 let fault = self.mismatch(&arg.ty, ty, arg.span);
                 return match only.names.get(at) {
                     Some(param) => fault.hint(format!(
@@ -216,7 +236,7 @@ impl Checker<'_> {
     /// An overload as it is declared: `F(float length, float diameter)`.
     fn form<Id>(&self, name: &str, overload: &Overload<Id>) -> String {
         let ty = |param: &Wanted| match param {
-            Wanted::Value(ty) => self.type_name(ty),
+            Wanted::Value(ty) | Wanted::Boxed(ty) => self.type_name(ty),
             Wanted::Text => "any".into(),
             Wanted::Unknown => "?".into(),
         };

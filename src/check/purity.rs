@@ -16,6 +16,7 @@ fn is_shared(ty: &Type) -> bool {
     match ty {
         Type::Node(_) | Type::Instance(_) | Type::Array(_) | Type::Object => true,
         Type::Class(class) => !class.is_a(ClassId::Shader) && !class.is_a(ClassId::Number),
+        Type::Generic(..) => true,
         _ => false,
     }
 }

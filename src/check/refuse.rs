@@ -106,7 +106,7 @@ const TYPES: &[(&[&str], &str)] = &[
         "models cannot use the network: read a file instead",
     ),
     (
-        &["Class", "Method", "Field", "Reflection"],
+        &["Method", "Field", "Reflection", "Constructor"],
         "reflection is not supported: name the class, method or field in the text",
     ),
     (
@@ -158,10 +158,7 @@ const TYPES: &[(&[&str], &str)] = &[
         &["SRoot", "TypeRoot", "TypeAxiom"],
         "models of several scales are not supported: write one module for each scale",
     ),
-    (
-        &["TreeMap", "TreeSet", "PriorityQueue", "ArrayDeque"],
-        "use `ArrayList` or `HashMap`, and `Collections.sort`",
-    ),
+    (&["PriorityQueue"], "use `ArrayList` and `Collections.sort`"),
     (
         &[
             "InputStreamReader",
@@ -222,44 +219,13 @@ pub(super) fn function_hint(name: &str) -> Option<&'static str> {
 }
 
 impl Checker<'_> {
-    /// Refuses enumerations, before anything uses their names.
-    pub(super) fn refuse_enums(&mut self) {
-        for file in 0..self.files.len() {
-            self.refuse_enums_of(&self.files[file].ast.items);
-        }
-    }
-
-    fn refuse_enums_of(&mut self, items: &[ast::Item]) {
-        for item in items {
-            match item {
-                ast::Item::Class(class) if class.keyword.name == "enum" => {
-                    self.refuse_class(class);
-                }
-                ast::Item::Class(class) => self.refuse_enums_of(&class.members),
-                ast::Item::Module(module) => self.refuse_enums_of(&module.members),
-                _ => {}
-            }
-        }
-    }
-
-    /// `enum`, and classes inside methods.
+    /// Classes inside methods.
     pub(super) fn refuse_class(&mut self, class: &ast::Class) {
         let keyword = class.keyword.name.as_str();
-        let (message, hint) = if keyword == "enum" {
-            (
-                "`enum` is not supported".to_owned(),
-                "declare constants: `const int RED = 0;`",
-            )
-        } else {
-            (
-                format!("a `{keyword}` inside a method is not supported"),
-                "declare it outside of the method",
-            )
-        };
-        self.report(Diagnostic::error("unsupported-class", class.name.span, message).hint(hint));
+        let message = format!("a `{keyword}` inside a method is not supported");
+        let fault = Diagnostic::error("unsupported-class", class.name.span, message);
+        self.report(fault.hint("declare it outside of the method"));
         self.refused.insert(class.name.name.clone());
-        self.refused
-            .extend(class.constants.iter().map(|constant| constant.name.clone()));
     }
 
     /// A module inside a module.

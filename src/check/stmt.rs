@@ -303,7 +303,7 @@ impl Checker<'_> {
     }
 
     /// The objects of a list, each cast to a type.
-    fn opened(&mut self, sequence: Sequence, ty: &Type, span: Span) -> Sequence {
+    pub(super) fn opened(&mut self, sequence: Sequence, ty: &Type, span: Span) -> Sequence {
         use super::model::{ExprKind, Place};
         let slot = self.cx.slot(Type::Object, span);
         let read = Expr {

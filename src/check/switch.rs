@@ -2,9 +2,11 @@
 
 use super::Checker;
 use super::constant;
-use super::model::{Constant, Stmt, StmtKind, Type};
+use super::enumeration;
+use super::model::{Constant, Expr, Stmt, StmtKind, Type};
 use super::types::promote;
 use crate::diag::Diagnostic;
+use crate::graph::TypeId;
 use crate::syntax::ast;
 
 impl Checker<'_> {
@@ -15,6 +17,13 @@ impl Checker<'_> {
         cases: &[ast::SwitchCase],
     ) -> Option<StmtKind> {
         let value = self.value(value).map(|value| self.unbox(value));
+        let enumeration = value
+            .as_ref()
+            .and_then(|value| self.enumeration_of(&value.ty));
+        let value = match enumeration {
+            Some(of) => value.and_then(|value| self.ordinal(value, of)),
+            None => value,
+        };
         let ty = value.as_ref().map(|value| value.ty.clone());
         let is_good = |ty: &Type| *ty == Type::String || Self::is_index(ty);
         if let Some((bad, value)) = ty
@@ -34,7 +43,11 @@ impl Checker<'_> {
         for case in cases {
             match &case.value {
                 Some(label) => {
-                    if let Some(constant) = self.case_label(label, ty.as_ref(), &starts) {
+                    let constant = match enumeration {
+                        Some(of) => self.enumeration_case(label, of, &starts),
+                        None => self.case_label(label, ty.as_ref(), &starts),
+                    };
+                    if let Some(constant) = constant {
                         starts.push((constant, body.len()));
                     }
                 }
@@ -64,6 +77,52 @@ impl Checker<'_> {
             default,
             body,
         })
+    }
+
+    /// The enumeration that a type is, if it is one.
+    fn enumeration_of(&self, ty: &Type) -> Option<TypeId> {
+        let Type::Instance(id) = *ty else { return None };
+        let name = &self.types[id].name;
+        let mut classes = self.classes.iter();
+        classes
+            .any(|class| class.is_enumeration && *class.module.name.name == **name)
+            .then_some(id)
+    }
+
+    /// The place of a value among those of its enumeration.
+    fn ordinal(&mut self, value: Expr, of: TypeId) -> Option<Expr> {
+        let span = value.span;
+        let field = self.visible_field(of, enumeration::ORDINAL)?;
+        let target = self.field_target(value, of, field)?;
+        Some(self.read(target, span))
+    }
+
+    /// The place of the value named after `case`; reported if it is none of the enumeration.
+    fn enumeration_case(
+        &mut self,
+        label: &ast::Expr,
+        of: TypeId,
+        earlier: &[(Constant, usize)],
+    ) -> Option<Constant> {
+        let name = super::member::dotted(label)?.last().copied()?.to_owned();
+        let index = usize::from(of.0).checked_sub(self.n_builtin)?;
+        let members = &self.modules[index].ast.members;
+        let mut constants = members.iter().filter_map(|item| match item {
+            ast::Item::Field(field) if field.modifiers.is_static => Some(&field.name.name),
+            _ => None,
+        });
+        let Some(place) = constants.position(|constant| *constant == name) else {
+            let message = format!("`{}` has no value `{name}`", self.types[of].name);
+            self.report(Diagnostic::error("bad-case", label.span, message));
+            return None;
+        };
+        let constant = Constant::Int(i32::try_from(place).unwrap_or(i32::MAX));
+        if earlier.iter().any(|(value, _)| *value == constant) {
+            let message = "this `case` stands twice";
+            self.report(Diagnostic::error("duplicate-case", label.span, message));
+            return None;
+        }
+        Some(constant)
     }
 
     /// The constant after `case`; reported if it is none.

@@ -112,10 +112,22 @@ impl Checker<'_> {
             (from, Type::Object) => is_reference(from),
             (Type::Node(a), Type::Node(b)) => self.types.is_a(*a, *b),
             (Type::Node(a) | Type::Instance(a), Type::Instance(b)) => self.is_kind_of(*a, *b),
-            (Type::Instance(a), Type::Class(b)) => {
-                self.library_class(*a).is_some_and(|class| class.is_a(*b))
+            (Type::Node(a) | Type::Instance(a), Type::Class(b) | Type::Generic(b, _)) => {
+                let library = self.library_class(*a);
+                library.is_some_and(|class| class.is_a(*b)) || self.implements_library(*a, *b)
             }
-            (Type::Class(a), Type::Class(b)) => a.is_a(*b),
+            (Type::Array(a), Type::Array(b)) => a == b || is_reference(a) && self.is_subtype(a, b),
+            // Of types of which one does not say what it holds, only the classes count.
+            (Type::Generic(a, of_a), Type::Generic(b, of_b)) => {
+                let is_open = |ty: &Type| *ty == Type::Object;
+                let mut pairs = of_a.iter().zip(of_b.iter());
+                a.is_a(*b)
+                    && pairs
+                        .all(|(x, y)| x == y || is_open(x) || is_open(y) || self.is_subtype(x, y))
+            }
+            (Type::Class(a) | Type::Generic(a, _), Type::Class(b) | Type::Generic(b, _)) => {
+                a.is_a(*b)
+            }
             (from, to) => from == to,
         }
     }
@@ -171,6 +183,7 @@ impl Checker<'_> {
             Type::String => "String".into(),
             Type::Node(id) | Type::Instance(id) => self.types[*id].name.to_string(),
             Type::Class(class) => class.name().into(),
+            Type::Generic(class, args) => format!("{}<{}>", class.name(), self.type_names(args)),
             Type::Array(element) => format!("{}[]", self.type_name(element)),
             Type::Object => "Object".into(),
         }

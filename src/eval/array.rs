@@ -34,6 +34,26 @@ pub enum Elements {
     Reference(Box<[Mutex<Value>]>),
 }
 
+impl Elements {
+    /// As many zeros (or nulls) of the same kind.
+    pub fn zeros(&self, n: usize) -> Self {
+        fn made<T: Default>(n: usize) -> Box<[T]> {
+            std::iter::repeat_with(T::default).take(n).collect()
+        }
+        match self {
+            Self::Boolean(_) => Self::Boolean(made(n)),
+            Self::Byte(_) => Self::Byte(made(n)),
+            Self::Short(_) => Self::Short(made(n)),
+            Self::Char(_) => Self::Char(made(n)),
+            Self::Int(_) => Self::Int(made(n)),
+            Self::Long(_) => Self::Long(made(n)),
+            Self::Float(_) => Self::Float(made(n)),
+            Self::Double(_) => Self::Double(made(n)),
+            Self::Reference(_) => Self::Reference(made(n)),
+        }
+    }
+}
+
 impl Array {
     /// An array that carries its share of the memory budget.
     pub fn new(elements: Elements, charge: Charge) -> Self {

@@ -13,6 +13,7 @@ use super::memory::Charge;
 use super::random::JavaRandom;
 use super::text::Text;
 use super::value::{Value, free};
+use crate::check::model::MethodId;
 use crate::graph::TypeId;
 use crate::library::ClassId;
 
@@ -67,6 +68,18 @@ pub enum Data {
     Reader(Box<TextReader>),
     /// A text that is written.
     Writer(Box<TextWriter>),
+    /// A key of a map with its value, and the map.
+    Entry(Box<(Value, Value)>, Arc<Object>),
+    /// Compares the other way round than this comparator, or than the natural order for null.
+    Reversed(Value),
+    /// A function as a value: a method of the model and what stands before its arguments.
+    Function(MethodId, Vec<Value>),
+    /// A pattern of numbers or moments.
+    Pattern(Box<str>),
+    /// A moment, in milliseconds since 1970.
+    Moment(i64),
+    /// Nothing that can be told.
+    Opaque,
 }
 
 /// An object of a class of the model.
@@ -200,6 +213,8 @@ impl Object {
             (Data::Tuple(a), Data::Tuple(b)) => a == b,
             (Data::Color(a), Data::Color(b)) => a == b,
             (Data::Shader(a), Data::Shader(b)) => a == b,
+            (Data::Moment(a), Data::Moment(b)) => a == b,
+            (Data::Map(a), Data::Map(b)) | (Data::Set(a), Data::Set(b)) => a.holds_same(&b, depth),
             (Data::List(a), Data::List(b)) => {
                 let mut pairs = a.values.iter().zip(&b.values);
                 a.values.len() == b.values.len() && pairs.all(|(a, b)| a.equals_nested(b, depth))
@@ -216,6 +231,12 @@ impl Object {
             Data::Instance(instance) => parts.append(&mut instance.fields),
             Data::Set(map) => parts.extend(std::mem::take(&mut **map).into_parts()),
             Data::Table(table) => table.take_parts(parts),
+            Data::Entry(entry, _) => {
+                parts.push(std::mem::take(&mut entry.0));
+                parts.push(std::mem::take(&mut entry.1));
+            }
+            Data::Reversed(value) => parts.push(std::mem::take(value)),
+            Data::Function(_, captured) => parts.append(captured),
             _ => {}
         }
     }
@@ -288,6 +309,15 @@ impl Object {
             Data::Table(table) => out.push_str(&table.title),
             Data::File(path) => out.push_str(&path),
             Data::Tokens(_) | Data::Row(..) | Data::LightColor(_) => {
+                out.push_str(self.class.name());
+            }
+            Data::Entry(entry, _) => {
+                entry.0.append_nested(out, depth);
+                out.push('=');
+                entry.1.append_nested(out, depth);
+            }
+            Data::Moment(millis) => out.push_str(&super::library::moments::text_of(millis)),
+            Data::Reversed(_) | Data::Function(..) | Data::Pattern(_) | Data::Opaque => {
                 out.push_str(self.class.name());
             }
             Data::Reader(_) | Data::Writer(_) => out.push_str(self.class.name()),

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::code::{Exec, Flow};
 use super::compile::Scope;
+use super::hooks::Hooks;
 use super::machine::{Machine, Statics};
 use super::stack::{Kind, Layout, Local, Mark};
 use super::trap::Trap;
@@ -30,9 +31,14 @@ pub struct Program {
     modules: Vec<Option<Module>>,
     /// Initializers of the variables of the model, in order.
     statics: Vec<Body>,
+    startup: Option<MethodId>,
     init: Option<MethodId>,
     entries: Vec<(String, MethodId)>,
     made_at: BTreeMap<TypeId, Vec<Span>>,
+    /// The interfaces of each module and class that has any.
+    interfaces: BTreeMap<TypeId, Vec<TypeId>>,
+    /// By node type; empty if no type of the model has any.
+    pub(super) hooks: Vec<Hooks>,
 }
 
 /// A method.
@@ -41,6 +47,8 @@ struct Method {
     /// The name in its declaration.
     name_span: Span,
     this: Option<TypeId>,
+    params: Vec<Type>,
+    result: Type,
     layout: Layout,
     /// `None` if it is abstract.
     body: Option<Exec>,
@@ -95,9 +103,12 @@ impl Program {
             methods,
             modules,
             statics,
+            startup: model.startup,
             init,
             entries,
             made_at: model.made_at.clone(),
+            interfaces: model.interfaces.clone(),
+            hooks: Hooks::of(model),
             outline,
         }
     }
@@ -164,6 +175,14 @@ impl Program {
             .try_for_each(|body| self.run(body, machine, machine.stack.mark()).map(drop))
     }
 
+    /// Runs `startup`, if there is one, and applies what it has queued.
+    pub fn run_startup(&self, machine: &mut Machine) -> Result<(), Trap> {
+        match self.startup {
+            Some(startup) => self.run_entry(startup, machine),
+            None => Ok(()),
+        }
+    }
+
     /// Runs `init`, if there is one, and applies what it has queued.
     pub fn run_init(&self, machine: &mut Machine) -> Result<(), Trap> {
         if let Some(init) = self.init {
@@ -225,6 +244,107 @@ impl Program {
         } else {
             trap.during(format!("{text}, called at {{place}}"), Some(called_at))
         }
+    }
+
+    /// Whether a method has a `this`.
+    pub(super) fn has_this(&self, id: MethodId) -> bool {
+        self.methods[id.0 as usize].this.is_some()
+    }
+
+    /// Calls a method of the model from inside of the library: on `this`, with boxed arguments, for a boxed value.
+    pub(super) fn call_method(
+        &self,
+        m: &mut Machine,
+        id: MethodId,
+        this: &Value,
+        args: &[Value],
+        span: Span,
+    ) -> Result<Value, Trap> {
+        let method = &self.methods[id.0 as usize];
+        let mark = m.stack.mark();
+        if method.this.is_some() {
+            match this {
+                Value::Node(node) => Some(*node).push(&mut m.stack),
+                object => object.clone().push(&mut m.stack),
+            }
+        }
+        for (ty, arg) in method.params.iter().zip(args) {
+            if let Err(trap) = self.push_argument(m, ty, arg, span) {
+                m.stack.release(mark);
+                return Err(trap);
+            }
+        }
+        self.run_method(id, m, mark, span)?;
+        let stack = &mut m.stack;
+        Ok(match &method.result {
+            Type::Void => Value::Null,
+            Type::Boolean => Value::Boolean(bool::take_result(stack)),
+            Type::Byte | Type::Short | Type::Char | Type::Int => {
+                Value::Int(i32::take_result(stack))
+            }
+            Type::Long => Value::Long(i64::take_result(stack)),
+            Type::Float => Value::Float(f32::take_result(stack)),
+            Type::Double => Value::Double(f64::take_result(stack)),
+            Type::Node(_) => Option::<NodeId>::take_result(stack).map_or(Value::Null, Value::Node),
+            _ => Value::take_result(stack),
+        })
+    }
+
+    /// Pushes a boxed value as an argument of type `ty`; a value of another type is an exception.
+    fn push_argument(
+        &self,
+        m: &mut Machine,
+        ty: &Type,
+        arg: &Value,
+        span: Span,
+    ) -> Result<(), Trap> {
+        let is_foreign = match ty {
+            Type::Node(wanted) => match arg {
+                Value::Null => false,
+                Value::Node(node) => !m.graph.is_a(*node, *wanted),
+                _ => true,
+            },
+            Type::Instance(wanted) => {
+                let is_one = |ty: TypeId| {
+                    let interfaces = self.interfaces.get(&ty);
+                    self.types.is_a(ty, *wanted) || interfaces.is_some_and(|i| i.contains(wanted))
+                };
+                !arg.is_null() && !arg.type_in(&m.graph).is_some_and(is_one)
+            }
+            Type::Boolean => arg.as_boolean().is_none(),
+            Type::Byte
+            | Type::Short
+            | Type::Char
+            | Type::Int
+            | Type::Long
+            | Type::Float
+            | Type::Double => arg.as_double().is_none(),
+            Type::String => arg.as_text().is_none() && !arg.is_null(),
+            _ => false,
+        };
+        if is_foreign {
+            let mut text = String::new();
+            m.append_text(arg, &mut text);
+            let message = format!("`{text}` is not of the type that the method takes");
+            return Err(Trap::exception(
+                crate::library::ClassId::ClassCastException,
+                message,
+                span,
+            ));
+        }
+        let stack = &mut m.stack;
+        match ty {
+            Type::Boolean => arg.as_boolean().unwrap_or(false).push(stack),
+            Type::Byte | Type::Short | Type::Char | Type::Int => {
+                arg.as_int().unwrap_or(0).push(stack);
+            }
+            Type::Long => arg.as_long().unwrap_or(0).push(stack),
+            Type::Float => arg.as_float().unwrap_or(0.0).push(stack),
+            Type::Double => arg.as_double().unwrap_or(0.0).push(stack),
+            Type::Node(_) => arg.as_node().push(stack),
+            _ => arg.clone().push(stack),
+        }
+        Ok(())
     }
 
     /// Runs the constructor of a module; the node and its arguments were pushed since `mark`.
@@ -305,6 +425,8 @@ impl Compiler<'_> {
             name: method.name.clone(),
             name_span: method.name_span,
             this: method.this,
+            params: method.params.clone(),
+            result: method.result.clone(),
             layout: scope.into_layout(),
             body,
         }

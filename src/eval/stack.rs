@@ -74,7 +74,7 @@ pub fn is_word(ty: &Type) -> bool {
         Type::Boolean | Type::Byte | Type::Short | Type::Char | Type::Int | Type::Long => true,
         Type::Float | Type::Double | Type::Node(_) => true,
         Type::Void | Type::Null | Type::String | Type::Array(_) | Type::Object => false,
-        Type::Class(_) | Type::Instance(_) => false,
+        Type::Class(_) | Type::Generic(..) | Type::Instance(_) => false,
     }
 }
 

@@ -15,7 +15,7 @@ use crate::library::ClassId;
 /// Longest text, in bytes.
 pub const MAX_TEXT: usize = 1 << 26;
 /// Collections in collections that are printed and compared.
-const MAX_NESTING: usize = 40;
+pub(super) const MAX_NESTING: usize = 40;
 
 /// Any value of the language. Texts, arrays and objects are shared, as Java's references are.
 #[derive(Clone, Debug, Default)]
@@ -223,8 +223,9 @@ impl Value {
                 })
             }
             Self::Object(object) => object.hash_code(),
+            Self::Node(node) => node.index() as i32,
             // Identity has no number that is the same on every run; one bucket for all is right, if slow.
-            Self::Array(_) | Self::Node(_) => 1,
+            Self::Array(_) => 1,
             Self::Byte(_) | Self::Short(_) | Self::Char(_) | Self::Int(_) => {
                 self.as_int().unwrap_or(0)
             }

@@ -120,6 +120,7 @@ impl Growth {
             program.initialize(machine)
         })?;
         self.run_deep("before step 1".to_owned(), |program, machine| {
+            program.run_startup(machine)?;
             program.run_init(machine)
         })
     }

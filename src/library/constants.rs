@@ -1,5 +1,7 @@
 //! Named constants: `Math.PI`, `Integer.MAX_VALUE`, `RED`, the bits of `setDerivationMode`.
 
+use super::ClassId;
+
 /// The value of a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names are Java's own")]
@@ -8,6 +10,8 @@ pub enum ConstantValue {
     Long(i64),
     Float(f32),
     Double(f64),
+    /// Null, of this class.
+    Null(ClassId),
     /// An opaque `RGBAShader` of this red, green and blue (0..=255, as GroIMP gives them).
     Shader([u8; 3]),
 }
@@ -25,7 +29,7 @@ pub struct LibraryConstant {
     pub doc: &'static str,
 }
 
-use ConstantValue::{Double, Float, Int, Long, Shader};
+use ConstantValue::{Double, Float, Int, Long, Null, Shader};
 
 const fn row(
     owner: &'static str,
@@ -57,6 +61,30 @@ static CONSTANTS: &[LibraryConstant] = &[
     row("", "XY_PLOT", Int(0), "A chart of lines."),
     row("", "SCATTER_PLOT", Int(1), "A chart of points."),
     row("", "BAR_PLOT", Int(2), "A chart of bars."),
+    row(
+        "Locale",
+        "US",
+        Null(ClassId::Locale),
+        "Numbers are written the English way.",
+    ),
+    row(
+        "Locale",
+        "ENGLISH",
+        Null(ClassId::Locale),
+        "Numbers are written the English way.",
+    ),
+    row(
+        "Locale",
+        "UK",
+        Null(ClassId::Locale),
+        "Numbers are written the English way.",
+    ),
+    row(
+        "Locale",
+        "ROOT",
+        Null(ClassId::Locale),
+        "Numbers are written the English way.",
+    ),
     row("Byte", "MAX_VALUE", Int(127), "Greatest byte."),
     row("Byte", "MIN_VALUE", Int(-128), "Least byte."),
     row("Short", "MAX_VALUE", Int(32767), "Greatest short."),

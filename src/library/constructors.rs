@@ -3,7 +3,9 @@
 
 use std::sync::LazyLock;
 
-use super::ValueType::{Boolean, Char, Class, Double, Float, Int, Long, String, Text, Void};
+use super::ValueType::{
+    Boolean, Char, CharArray, Class, Double, Float, Int, Long, String, Text, Void,
+};
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
 
@@ -24,9 +26,9 @@ signatures! {
     Phong = "Phong"."new"() -> Void, Pure, "", "Half gray, matt.";
     PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";
     SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
-    DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 10 W/m².";
+    DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 1 W/m².";
     AreaLight = "AreaLight"."new"() -> Void, Pure, "", "White, 100 W.";
-    Sky = "Sky"."new"() -> Void, Pure, "", "White, 50 W/m².";
+    Sky = "Sky"."new"() -> Void, Pure, "", "White, 1 W/m².";
     LightModel = "LightModel"."new"() -> Void, Pure, "", "Default numbers of rays and reflections.";
     LightModelOf = "LightModel"."new"(Int rays, Int depth) -> Void, Pure, "", "From numbers of rays and of reflections.";
     Random = "Random"."new"() -> Void, Random, "", "Seeded from the model's generator.";
@@ -70,11 +72,22 @@ signatures! {
     LightModelLeast = "LightModel"."new"(Int rays, Int depth, Double least) -> Void, Pure, "", "From numbers of rays and of reflections, and the power below which rays end.";
     Buffer = "StringBuffer"."new"() -> Void, Pure, "", "Empty.";
     BufferText = "StringBuffer"."new"(String text) -> Void, Pure, "", "With this text.";
-    Builder = "StringBuilder"."new"() -> Void, Pure, "", "Empty.";
-    BuilderText = "StringBuilder"."new"(String text) -> Void, Pure, "", "With this text.";
+    BufferCapacity = "StringBuffer"."new"(Int n) -> Void, Pure, "", "Empty, with room.";
+    Date = "Date"."new"() -> Void, Writes, "", "The moment of the step.";
+    DateOf = "Date"."new"(Long millis) -> Void, Pure, "ms", "Milliseconds since 1970.";
+    SimpleDateFormat = "SimpleDateFormat"."new"(String pattern) -> Void, Pure, "", "From a pattern of `yyyy MM dd HH mm ss SSS`.";
+    DecimalFormat = "DecimalFormat"."new"(String pattern) -> Void, Pure, "", "From a pattern such as `0.00` or `#,##0.#`.";
     Throwable = "Throwable"."new"() -> Void, Pure, "", "Without a message.";
     ThrowableText = "Throwable"."new"(String message) -> Void, Pure, "", "With a message.";
     String = "String"."new"() -> Void, Pure, "", "Empty text.";
+    StringOfChars = "String"."new"(CharArray chars) -> Void, Pure, "", "Of characters.";
+    TreeSet = "TreeSet"."new"() -> Void, Pure, "", "Empty.";
+    TreeSetCopy = "TreeSet"."new"(Class(ClassId::Collection) values) -> Void, Pure, "", "The same elements.";
+    MapCopy = "HashMap"."new"(Class(ClassId::Map) map) -> Void, Pure, "", "The same keys and values.";
+    MapLoad = "HashMap"."new"(Int n, Float load) -> Void, Pure, "", "Empty, with room.";
+    TreeMapCopy = "TreeMap"."new"(Class(ClassId::Map) map) -> Void, Pure, "", "The same keys and values.";
+    TreeMap = "TreeMap"."new"() -> Void, Pure, "", "Empty.";
+    SetCapacity = "HashSet"."new"(Int n) -> Void, Pure, "", "Empty, with room.";
     StringCopy = "String"."new"(String text) -> Void, Pure, "", "The same text.";
 }
 
@@ -85,6 +98,8 @@ static BY_NAME: LazyLock<Index<ConstructorId>> =
 pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
     if [
         ClassId::List,
+        ClassId::Queue,
+        ClassId::Deque,
         ClassId::Collection,
         ClassId::Map,
         ClassId::Set,

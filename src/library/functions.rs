@@ -3,7 +3,8 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, Class, Double, Float, FloatArray, Int, Long, Node, Object, String, Text, Void,
+    Argument, Boolean, Char, CharArray, Class, Double, Float, FloatArray, Int, Long, Node, Object,
+    Objects, Same, String, Text, Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
@@ -57,17 +58,34 @@ signatures! {
     RepaintView = ""."repaintView3D"() -> Void, Prints, "", "Nothing: there is no window.";
     DefaultView = "View3D"."getDefaultView"(Object graph) -> Class(ClassId::View3D), Pure, "", "A window that does nothing.";
     Gc = "System"."gc"() -> Void, Pure, "", "Nothing.";
-    Stop = ""."stop"() -> Void, Writes, "", "Ends the growth after this step.";
     Exit = "System"."exit"(Int code) -> Void, Writes, "", "Ends the run.";
     ArraysToString = "Arrays"."toString"(Object array) -> String, Pure, "", "The elements of an array as text.";
     ArraysSort = "Arrays"."sort"(Object array) -> Void, Writes, "", "Sorts an array.";
     ArraysFill = "Arrays"."fill"(Object array, Object value) -> Void, Writes, "", "Sets all elements of an array.";
-    ArraysAsList = "Arrays"."asList"(Object array) -> Class(ClassId::List), Pure, "", "The elements of an array as a list.";
+    ArraysAsList = "Arrays"."asList"(Objects array) -> Class(ClassId::List), Pure, "", "Values, or the elements of an array, as a list.";
+    ArraysSortBy = "Arrays"."sort"(Object array, Class(ClassId::Comparator) comparator) -> Void, Writes, "", "Sorts an array by a comparison.";
+    ArraysSortPart = "Arrays"."sort"(Object array, Int from, Int to) -> Void, Writes, "", "Sorts the elements from an index up to another.";
+    ArraysFillPart = "Arrays"."fill"(Object array, Int from, Int to, Object value) -> Void, Writes, "", "Sets the elements from an index up to another.";
+    ArraysCopyOf = "Arrays"."copyOf"(Object array, Int length) -> Same, Pure, "", "The first elements, filled up with zeros.";
+    ArraysCopyOfRange = "Arrays"."copyOfRange"(Object array, Int from, Int to) -> Same, Pure, "", "The elements from an index up to another, filled up with zeros.";
+    ArraysEquals = "Arrays"."equals"(Object a, Object b) -> Boolean, Pure, "", "Whether both arrays hold equal elements.";
+    ArraysHashCode = "Arrays"."hashCode"(Object array) -> Int, Pure, "", "A number that arrays of equal elements share.";
+    ArraysDeepToString = "Arrays"."deepToString"(Object array) -> String, Pure, "", "The elements of an array of arrays as text.";
+    ArraysBinarySearch = "Arrays"."binarySearch"(Object array, Object value) -> Int, Pure, "", "Index of a value in a sorted array, -(place) - 1 if it is not there.";
     CollectionsSort = "Collections"."sort"(Class(ClassId::List) list) -> Void, Writes, "", "Sorts a list.";
+    CollectionsSortBy = "Collections"."sort"(Class(ClassId::List) list, Class(ClassId::Comparator) comparator) -> Void, Writes, "", "Sorts a list by a comparison.";
+    CollectionsReverseOrder = "Collections"."reverseOrder"() -> Class(ClassId::Comparator), Pure, "", "Compares the other way round.";
+    CollectionsSwap = "Collections"."swap"(Class(ClassId::List) list, Int i, Int j) -> Void, Writes, "", "Exchanges two elements.";
+    CollectionsFrequency = "Collections"."frequency"(Class(ClassId::Collection) values, Object value) -> Int, Pure, "", "Number of equal elements.";
+    CollectionsAddAll = "Collections"."addAll"(Class(ClassId::Collection) collection, Objects values) -> Boolean, Writes, "", "Adds values.";
+    CollectionsUnmodifiable = "Collections"."unmodifiableList"(Class(ClassId::List) list) -> Same, Pure, "", "The same list.";
+    CollectionsEmptyList = "Collections"."emptyList"() -> Class(ClassId::List), Pure, "", "An empty list.";
+    CollectionsNCopies = "Collections"."nCopies"(Int n, Object value) -> Class(ClassId::List), Pure, "", "A list of the same value n times.";
     CollectionsReverse = "Collections"."reverse"(Class(ClassId::List) list) -> Void, Writes, "", "Turns a list round.";
     CollectionsShuffle = "Collections"."shuffle"(Class(ClassId::List) list) -> Void, Random, "", "Mixes a list.";
-    CollectionsMin = "Collections"."min"(Class(ClassId::Collection) values) -> Object, Pure, "", "The least element.";
-    CollectionsMax = "Collections"."max"(Class(ClassId::Collection) values) -> Object, Pure, "", "The greatest element.";
+    CollectionsShuffleBy = "Collections"."shuffle"(Class(ClassId::List) list, Class(ClassId::Random) random) -> Void, Writes, "", "Mixes a list by a generator of its own.";
+    CollectionsMin = "Collections"."min"(Class(ClassId::Collection) values) -> Argument(0), Pure, "", "The least element.";
+    CollectionsMax = "Collections"."max"(Class(ClassId::Collection) values) -> Argument(0), Pure, "", "The greatest element.";
 
     AttributeRadius = "Attributes"."RADIUS"(Node node) -> Float, Graph, "m", "Radius with which the node is drawn, from its own diameter or the turtle's.";
     AttributeDtgColor = "Attributes"."DTG_COLOR"(Node node) -> Int, Graph, "", "EGA colour with which the node is drawn, its own or the turtle's.";
@@ -116,6 +134,21 @@ signatures! {
     SignumDouble = "Math"."signum"(Double x) -> Double, Pure, "", "Sign: -1, 0 or 1.";
     FloorDivInt = "Math"."floorDiv"(Int a, Int divisor) -> Int, Pure, "", "Quotient rounded down.";
     FloorModInt = "Math"."floorMod"(Int a, Int divisor) -> Int, Pure, "", "Remainder with the divisor's sign.";
+    FloorDivLong = "Math"."floorDiv"(Long a, Long b) -> Long, Pure, "", "Quotient rounded down.";
+    FloorModLong = "Math"."floorMod"(Long a, Long b) -> Long, Pure, "", "Remainder with the divisor's sign.";
+    AddExactInt = "Math"."addExact"(Int a, Int b) -> Int, Pure, "", "Sum; an exception if it is no int.";
+    AddExactLong = "Math"."addExact"(Long a, Long b) -> Long, Pure, "", "Sum; an exception if it is no long.";
+    SubtractExactInt = "Math"."subtractExact"(Int a, Int b) -> Int, Pure, "", "Difference; an exception if it is no int.";
+    SubtractExactLong = "Math"."subtractExact"(Long a, Long b) -> Long, Pure, "", "Difference; an exception if it is no long.";
+    MultiplyExactInt = "Math"."multiplyExact"(Int a, Int b) -> Int, Pure, "", "Product; an exception if it is no int.";
+    MultiplyExactLong = "Math"."multiplyExact"(Long a, Long b) -> Long, Pure, "", "Product; an exception if it is no long.";
+    ToIntExact = "Math"."toIntExact"(Long n) -> Int, Pure, "", "The same number; an exception if it is no int.";
+    Fma = "Math"."fma"(Double a, Double b, Double c) -> Double, Pure, "", "a b + c, rounded once.";
+    Ulp = "Math"."ulp"(Double x) -> Double, Pure, "", "Distance to the next greater number in size.";
+    NextUp = "Math"."nextUp"(Double x) -> Double, Pure, "", "The next greater number.";
+    NextDown = "Math"."nextDown"(Double x) -> Double, Pure, "", "The next lesser number.";
+    CopySign = "Math"."copySign"(Double size, Double sign) -> Double, Pure, "", "The first with the sign of the second.";
+    IeeeRemainder = "Math"."IEEEremainder"(Double x, Double y) -> Double, Pure, "", "Remainder after the nearest quotient.";
     MathRandom = "Math"."random"() -> Double, Random, "", "Uniform in [0, 1), from the model's generator.";
 
     ParseInt = "Integer"."parseInt"(String text) -> Int, Pure, "", "Number in a text.";
@@ -124,6 +157,43 @@ signatures! {
     IntegerToString = "Integer"."toString"(Int n) -> String, Pure, "", "Decimal text.";
     IntegerToHexString = "Integer"."toHexString"(Int n) -> String, Pure, "", "Hexadecimal text of the 32 bits.";
     IntegerToBinaryString = "Integer"."toBinaryString"(Int n) -> String, Pure, "", "Binary text of the 32 bits.";
+    ParseIntRadix = "Integer"."parseInt"(String text, Int base) -> Int, Pure, "", "Number in a text of a base 2 to 36.";
+    IntegerToStringRadix = "Integer"."toString"(Int n, Int base) -> String, Pure, "", "Text in a base 2 to 36.";
+    IntegerToOctalString = "Integer"."toOctalString"(Int n) -> String, Pure, "", "Octal text of the 32 bits.";
+    IntegerCompare = "Integer"."compare"(Int a, Int b) -> Int, Pure, "", "-1, 0 or 1 as the first is less, equal or greater.";
+    IntegerSignum = "Integer"."signum"(Int n) -> Int, Pure, "", "Sign: -1, 0 or 1.";
+    IntegerBitCount = "Integer"."bitCount"(Int n) -> Int, Pure, "", "Number of bits that are set.";
+    IntegerMax = "Integer"."max"(Int a, Int b) -> Int, Pure, "", "Greater of two.";
+    IntegerMin = "Integer"."min"(Int a, Int b) -> Int, Pure, "", "Lesser of two.";
+    IntegerSum = "Integer"."sum"(Int a, Int b) -> Int, Pure, "", "Sum of two.";
+    LongCompare = "Long"."compare"(Long a, Long b) -> Int, Pure, "", "-1, 0 or 1 as the first is less, equal or greater.";
+    LongMax = "Long"."max"(Long a, Long b) -> Long, Pure, "", "Greater of two.";
+    LongMin = "Long"."min"(Long a, Long b) -> Long, Pure, "", "Lesser of two.";
+    LongToHexString = "Long"."toHexString"(Long n) -> String, Pure, "", "Hexadecimal text of the 64 bits.";
+    LongToBinaryString = "Long"."toBinaryString"(Long n) -> String, Pure, "", "Binary text of the 64 bits.";
+    LongValueOfText = "Long"."valueOf"(String text) -> Class(ClassId::Long), Pure, "", "Number in a text, boxed.";
+    FloatCompare = "Float"."compare"(Float a, Float b) -> Int, Pure, "", "-1, 0 or 1 as the first is less, equal or greater.";
+    FloatMax = "Float"."max"(Float a, Float b) -> Float, Pure, "", "Greater of two.";
+    FloatMin = "Float"."min"(Float a, Float b) -> Float, Pure, "", "Lesser of two.";
+    FloatIsFinite = "Float"."isFinite"(Float x) -> Boolean, Pure, "", "Whether it is a number and not infinite.";
+    FloatToIntBits = "Float"."floatToIntBits"(Float x) -> Int, Pure, "", "Its 32 bits.";
+    IntBitsToFloat = "Float"."intBitsToFloat"(Int n) -> Float, Pure, "", "The number of 32 bits.";
+    DoubleMax = "Double"."max"(Double a, Double b) -> Double, Pure, "", "Greater of two.";
+    DoubleMin = "Double"."min"(Double a, Double b) -> Double, Pure, "", "Lesser of two.";
+    DoubleSum = "Double"."sum"(Double a, Double b) -> Double, Pure, "", "Sum of two.";
+    DoubleIsFinite = "Double"."isFinite"(Double x) -> Boolean, Pure, "", "Whether it is a number and not infinite.";
+    DoubleToLongBits = "Double"."doubleToLongBits"(Double x) -> Long, Pure, "", "Its 64 bits.";
+    LongBitsToDouble = "Double"."longBitsToDouble"(Long n) -> Double, Pure, "", "The number of 64 bits.";
+    BooleanValueOf = "Boolean"."valueOf"(Boolean value) -> Class(ClassId::Boolean), Pure, "", "Boxed.";
+    BooleanValueOfText = "Boolean"."valueOf"(String text) -> Class(ClassId::Boolean), Pure, "", "Whether the text is `true`, boxed.";
+    CharacterValueOf = "Character"."valueOf"(Char c) -> Class(ClassId::Character), Pure, "", "Boxed.";
+    IsUpperCase = "Character"."isUpperCase"(Char c) -> Boolean, Pure, "", "Whether it is a capital.";
+    IsLowerCase = "Character"."isLowerCase"(Char c) -> Boolean, Pure, "", "Whether it is a small letter.";
+    IsLetterOrDigit = "Character"."isLetterOrDigit"(Char c) -> Boolean, Pure, "", "Whether it is a letter or a digit.";
+    CharToUpperCase = "Character"."toUpperCase"(Char c) -> Char, Pure, "", "The capital.";
+    CharToLowerCase = "Character"."toLowerCase"(Char c) -> Char, Pure, "", "The small letter.";
+    GetNumericValue = "Character"."getNumericValue"(Char c) -> Int, Pure, "", "Value of a digit or letter, -1 if none.";
+    ObjectsEquals = "Objects"."equals"(Object a, Object b) -> Boolean, Pure, "", "Whether both are equal; null is equal to null.";
     ParseLong = "Long"."parseLong"(String text) -> Long, Pure, "", "Number in a text.";
     LongValueOf = "Long"."valueOf"(Long n) -> Class(ClassId::Long), Pure, "", "Boxed.";
     LongToString = "Long"."toString"(Long n) -> String, Pure, "", "Decimal text.";
@@ -147,19 +217,26 @@ signatures! {
     IsWhitespace = "Character"."isWhitespace"(Char c) -> Boolean, Pure, "", "Whether it is white space.";
     CharacterToString = "Character"."toString"(Char c) -> String, Pure, "", "Text of one character.";
     StringValueOf = "String"."valueOf"(Text value) -> String, Pure, "", "Text of a value.";
-    StringFormat1 = "String"."format"(String pattern, Object value) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat2 = "String"."format"(String pattern, Object value1, Object value2) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat3 = "String"."format"(String pattern, Object value1, Object value2, Object value3) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat4 = "String"."format"(String pattern, Object value1, Object value2, Object value3, Object value4) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat5 = "String"."format"(String pattern, Object value1, Object value2, Object value3, Object value4, Object value5) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat6 = "String"."format"(String pattern, Object value1, Object value2, Object value3, Object value4, Object value5, Object value6) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat7 = "String"."format"(String pattern, Object value1, Object value2, Object value3, Object value4, Object value5, Object value6, Object value7) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
-    StringFormat8 = "String"."format"(String pattern, Object value1, Object value2, Object value3, Object value4, Object value5, Object value6, Object value7, Object value8) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormat = "String"."format"(String pattern, Objects values) -> String, Pure, "", "Text of values after a pattern such as `%.2f`.";
+    StringFormatLocale = "String"."format"(Class(ClassId::Locale) locale, String pattern, Objects values) -> String, Pure, "", "Text of values after a pattern; numbers are written the English way.";
+    StringValueOfChars = "String"."valueOf"(CharArray chars) -> String, Pure, "", "Text of characters.";
+    StringJoin = "String"."join"(Text between, Objects values) -> String, Pure, "", "Texts with another one between them.";
+    StringJoinAll = "String"."join"(Text between, Class(ClassId::Collection) values) -> String, Pure, "", "The elements of a collection with a text between them.";
     CurrentTimeMillis = "System"."currentTimeMillis"() -> Long, Writes, "ms", "Time since 1970.";
     NanoTime = "System"."nanoTime"() -> Long, Writes, "ns", "Time since some moment.";
+    ArrayCopy = "System"."arraycopy"(Object source, Int from, Object target, Int to, Int n) -> Void, Writes, "", "Copies elements: from an array at an index into another at an index, so many.";
+    LineSeparator = "System"."lineSeparator"() -> String, Pure, "", "The end of a line, `\\n`.";
+    SystemProperty = "System"."getProperty"(String name) -> String, Pure, "", "`line.separator`, `file.separator`, `path.separator` and `user.dir`; null for others.";
+    Sleep = "Thread"."sleep"(Long millis) -> Void, Prints, "ms", "Nothing: growth waits for nobody.";
+    SetDefaultLocale = "Locale"."setDefault"(Class(ClassId::Locale) locale) -> Void, Prints, "", "Nothing: numbers are always written the English way.";
+    GetRuntime = "Runtime"."getRuntime"() -> Class(ClassId::Runtime), Pure, "", "What the model may use.";
+    SystemOutPrintf = "System.out"."printf"(String pattern, Objects values) -> Void, Prints, "", "Prints values after a pattern such as `%.2f`.";
+    SystemOutPrintfLocale = "System.out"."printf"(Class(ClassId::Locale) locale, String pattern, Objects values) -> Void, Prints, "", "Prints values after a pattern.";
+    SystemOutFormat = "System.out"."format"(String pattern, Objects values) -> Void, Prints, "", "Prints values after a pattern such as `%.2f`.";
     SystemOutPrintln = "System.out"."println"() -> Void, Prints, "", "Ends the line.";
     SystemOutPrintlnText = "System.out"."println"(Text value) -> Void, Prints, "", "Prints a value and ends the line.";
     SystemOutPrintText = "System.out"."print"(Text value) -> Void, Prints, "", "Prints a value.";
+    Stop = ""."stop"() -> Void, Writes, "", "Ends the growth after this step.";
 }
 
 static BY_NAME: LazyLock<Index<FunctionId>> =

@@ -3,12 +3,13 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, CharArray, Class, Double, FileArray, Float, Int, Long, Node, Object, String,
-    StringArray, Text, Void,
+    Boolean, Char, CharArray, Class, Double, FileArray, Float, Int, Long, Node, Object,
+    ObjectArray, Objects, Same, String, StringArray, Text, Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
 
+const FUNCTION: ValueType = Class(ClassId::Function);
 const TUPLE: ValueType = Class(ClassId::Tuple3d);
 const VECTOR: ValueType = Class(ClassId::Vector3d);
 const POINT: ValueType = Class(ClassId::Point3d);
@@ -17,11 +18,28 @@ const COLLECTION: ValueType = Class(ClassId::Collection);
 const COLOR: ValueType = Class(ClassId::RGBColor);
 const SPECTRUM: ValueType = Class(ClassId::Spectrum3d);
 
+/// What a collection holds, or the keys of a map.
+const E: ValueType = ValueType::Argument(0);
+/// What a map holds.
+const V: ValueType = ValueType::Argument(1);
+const COMPARATOR: ValueType = Class(ClassId::Comparator);
+
 signatures! {
     /// A method of a library class: one per overload.
     MethodId;
     ObjectEquals = "Object"."equals"(Object other) -> Boolean, Pure, "", "Whether both are equal.";
     ObjectToString = "Object"."toString"() -> String, Pure, "", "Its text.";
+    ObjectGetClass = "Object"."getClass"() -> Class(ClassId::Class), Pure, "", "Its class.";
+    ClassSimpleName = "Class"."getSimpleName"() -> String, Pure, "", "Its name.";
+    ClassName = "Class"."getName"() -> String, Pure, "", "Its name, of classes of Java with the package.";
+    NodeId = "Node"."getId"() -> Long, Graph, "", "Number of the node.";
+    NodeSuccessor = "Node"."getSuccessor"() -> Node, Graph, "", "The first node behind a successor edge, null if none.";
+    NodePredecessor = "Node"."getPredecessor"() -> Node, Graph, "", "The node before it by a successor edge, null if none.";
+    NodeBranch = "Node"."getBranch"() -> Node, Graph, "", "The first node behind a branch edge, null if none.";
+    NodeAxisParent = "Node"."getAxisParent"() -> Node, Graph, "", "The node before it by a successor or branch edge, null if none.";
+    NodeChildCount = "Node"."getDirectChildCount"() -> Int, Graph, "", "Number of edges that lead away from it.";
+    NodeIsAncestorOf = "Node"."isAncestorOf"(Node node) -> Boolean, Graph, "", "Whether a way of successor and branch edges leads from it to another node.";
+    ArrayClone = "Array"."clone"() -> Same, Pure, "", "A copy.";
     ObjectHashCode = "Object"."hashCode"() -> Int, Pure, "", "A number that equal objects share.";
 
     StringLength = "String"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
@@ -44,10 +62,16 @@ signatures! {
     StringReplaceChar = "String"."replace"(Char old, Char replacement) -> String, Pure, "", "With every occurrence replaced.";
     StringIsEmpty = "String"."isEmpty"() -> Boolean, Pure, "", "Whether its length is 0.";
     StringSplit = "String"."split"(String separator) -> StringArray, Pure, "", "Parts between occurrences of a separator.";
-    StringSplitLimit = "String"."split"(String separator, Int limit) -> StringArray, Pure, "", "At most so many parts; empty parts at the end are kept if the number is negative.";
     StringConcat = "String"."concat"(String text) -> String, Pure, "", "With a text appended.";
     StringToCharArray = "String"."toCharArray"() -> CharArray, Pure, "", "Its characters.";
 
+    StringStrip = "String"."strip"() -> String, Pure, "", "Without white space at both ends.";
+    StringIsBlank = "String"."isBlank"() -> Boolean, Pure, "", "Whether there is nothing but white space.";
+    StringRepeat = "String"."repeat"(Int n) -> String, Pure, "", "The text n times.";
+    StringSplitLimit = "String"."split"(String separator, Int limit) -> StringArray, Pure, "", "At most so many parts between occurrences of a separator.";
+    StringCompareToIgnoreCase = "String"."compareToIgnoreCase"(String text) -> Int, Pure, "", "As `compareTo`, without regard to case.";
+    StringIntern = "String"."intern"() -> String, Pure, "", "The same text.";
+    StringStartsWithAt = "String"."startsWith"(String prefix, Int index) -> Boolean, Pure, "", "Whether a text stands at an index.";
     StringReplaceAll = "String"."replaceAll"(Text pattern, Text replacement) -> String, Pure, "", "With every occurrence of a text replaced; of patterns only blanks are known.";
     StringReplaceFirst = "String"."replaceFirst"(Text pattern, Text replacement) -> String, Pure, "", "With the first occurrence replaced.";
     StringIndexOfCharFrom = "String"."indexOf"(Char c, Int from) -> Int, Pure, "", "First place of a character from an index on, -1 if none.";
@@ -143,31 +167,68 @@ signatures! {
     CollectionSize = "Collection"."size"() -> Int, Pure, "", "Number of elements.";
     CollectionIsEmpty = "Collection"."isEmpty"() -> Boolean, Pure, "", "Whether there is none.";
     CollectionContains = "Collection"."contains"(Object element) -> Boolean, Pure, "", "Whether an equal one is in it.";
-    ListAdd = "List"."add"(Object element) -> Boolean, Writes, "", "Appends.";
-    ListInsert = "List"."add"(Int index, Object element) -> Void, Writes, "", "Inserts at an index.";
+    ListAdd = "List"."add"(E element) -> Boolean, Writes, "", "Appends.";
+    ListInsert = "List"."add"(Int index, E element) -> Void, Writes, "", "Inserts at an index.";
     ListAddAll = "List"."addAll"(COLLECTION elements) -> Boolean, Writes, "", "Appends all.";
-    ListGet = "List"."get"(Int index) -> Object, Pure, "", "Element at an index from 0.";
-    ListSet = "List"."set"(Int index, Object element) -> Object, Writes, "", "Replaces an element, gives the old one.";
-    ListRemoveAt = "List"."remove"(Int index) -> Object, Writes, "", "Removes and gives the element at an index.";
+    ListGet = "List"."get"(Int index) -> E, Pure, "", "Element at an index from 0.";
+    ListSet = "List"."set"(Int index, E element) -> E, Writes, "", "Replaces an element, gives the old one.";
+    ListRemoveAt = "List"."remove"(Int index) -> E, Writes, "", "Removes and gives the element at an index.";
     ListRemove = "List"."remove"(Object element) -> Boolean, Writes, "", "Removes the first equal element.";
     ListIndexOf = "List"."indexOf"(Object element) -> Int, Pure, "", "Index of the first equal element, -1 if none.";
     ListClear = "List"."clear"() -> Void, Writes, "", "Removes all.";
-    ListAddElement = "List"."addElement"(Object element) -> Void, Writes, "", "Appends.";
-    ListElementAt = "List"."elementAt"(Int index) -> Object, Pure, "", "Element at an index from 0.";
-    ListFirst = "List"."getFirst"() -> Object, Pure, "", "The first element.";
-    ListLast = "List"."getLast"() -> Object, Pure, "", "The last element.";
-    ListAddFirst = "List"."addFirst"(Object element) -> Void, Writes, "", "Inserts in front.";
-    ListAddLast = "List"."addLast"(Object element) -> Void, Writes, "", "Appends.";
-    ListRemoveFirst = "List"."removeFirst"() -> Object, Writes, "", "Removes and gives the first element.";
-    ListRemoveLast = "List"."removeLast"() -> Object, Writes, "", "Removes and gives the last element.";
-    StackPush = "Stack"."push"(Object element) -> Object, Writes, "", "Appends.";
-    StackPop = "Stack"."pop"() -> Object, Writes, "", "Removes and gives the last element.";
-    StackPeek = "Stack"."peek"() -> Object, Pure, "", "The last element.";
+    CollectionToArray = "Collection"."toArray"() -> ObjectArray, Pure, "", "Its elements as an array.";
+    CollectionToArrayOf = "Collection"."toArray"(ObjectArray array) -> ObjectArray, Pure, "", "Its elements as an array.";
+    CollectionContainsAll = "Collection"."containsAll"(COLLECTION values) -> Boolean, Pure, "", "Whether all are in it.";
+    CollectionAddAll = "Collection"."addAll"(COLLECTION values) -> Boolean, Writes, "", "Adds all; whether anything changed.";
+    CollectionRemoveAll = "Collection"."removeAll"(COLLECTION values) -> Boolean, Writes, "", "Removes all that are in another; whether anything changed.";
+    CollectionRetainAll = "Collection"."retainAll"(COLLECTION values) -> Boolean, Writes, "", "Removes all that are not in another; whether anything changed.";
+    CollectionForEach = "Collection"."forEach"(FUNCTION function) -> Void, Writes, "", "Calls a function with each element.";
+    ListInsertAll = "List"."addAll"(Int index, COLLECTION values) -> Boolean, Writes, "", "Inserts all at an index.";
+    ListLastIndexOf = "List"."lastIndexOf"(Object value) -> Int, Pure, "", "Index of the last equal element, -1 if none.";
+    ListSubList = "List"."subList"(Int from, Int to) -> Same, Pure, "", "A copy of the elements from an index up to another.";
+    ListSortBy = "List"."sort"(COMPARATOR comparator) -> Void, Writes, "", "Sorts it by a comparison; by the natural order for null.";
+    ListEnsureCapacity = "List"."ensureCapacity"(Int n) -> Void, Pure, "", "Nothing: there is always room.";
+    ListTrimToSize = "List"."trimToSize"() -> Void, Pure, "", "Nothing.";
+    VectorFirstElement = "Vector"."firstElement"() -> E, Pure, "", "The first element.";
+    VectorLastElement = "Vector"."lastElement"() -> E, Pure, "", "The last element.";
+    VectorInsertElementAt = "Vector"."insertElementAt"(E value, Int index) -> Void, Writes, "", "Inserts at an index.";
+    VectorSetElementAt = "Vector"."setElementAt"(E value, Int index) -> Void, Writes, "", "Replaces the element at an index.";
+    VectorRemoveElementAt = "Vector"."removeElementAt"(Int index) -> Void, Writes, "", "Removes the element at an index.";
+    VectorRemoveElement = "Vector"."removeElement"(Object value) -> Boolean, Writes, "", "Removes the first equal element.";
+    VectorRemoveAll = "Vector"."removeAllElements"() -> Void, Writes, "", "Removes all.";
+    QueueOffer = "Queue"."offer"(E value) -> Boolean, Writes, "", "Appends.";
+    QueuePoll = "Queue"."poll"() -> E, Writes, "", "Removes and gives the first element, null if there is none.";
+    QueuePeek = "Queue"."peek"() -> E, Pure, "", "The first element, null if there is none.";
+    QueueRemove = "Queue"."remove"() -> E, Writes, "", "Removes and gives the first element.";
+    QueueElement = "Queue"."element"() -> E, Pure, "", "The first element.";
+    DequePush = "Deque"."push"(E value) -> Void, Writes, "", "Inserts in front.";
+    DequePop = "Deque"."pop"() -> E, Writes, "", "Removes and gives the first element.";
+    DequeOfferFirst = "Deque"."offerFirst"(E value) -> Boolean, Writes, "", "Inserts in front.";
+    DequeOfferLast = "Deque"."offerLast"(E value) -> Boolean, Writes, "", "Appends.";
+    DequePollFirst = "Deque"."pollFirst"() -> E, Writes, "", "Removes and gives the first element, null if there is none.";
+    DequePollLast = "Deque"."pollLast"() -> E, Writes, "", "Removes and gives the last element, null if there is none.";
+    DequePeekFirst = "Deque"."peekFirst"() -> E, Pure, "", "The first element, null if there is none.";
+    DequePeekLast = "Deque"."peekLast"() -> E, Pure, "", "The last element, null if there is none.";
+    StackSearch = "Stack"."search"(Object value) -> Int, Pure, "", "Place of a value counted from the top, from 1; -1 if it is not there.";
+    TreeSetFirst = "TreeSet"."first"() -> E, Pure, "", "The least element.";
+    TreeSetLast = "TreeSet"."last"() -> E, Pure, "", "The greatest element.";
+    IteratorRemove = "Iterator"."remove"() -> Void, Writes, "", "Removes the element that `next` gave.";
+    ListAddElement = "List"."addElement"(E element) -> Void, Writes, "", "Appends.";
+    ListElementAt = "List"."elementAt"(Int index) -> E, Pure, "", "Element at an index from 0.";
+    ListFirst = "List"."getFirst"() -> E, Pure, "", "The first element.";
+    ListLast = "List"."getLast"() -> E, Pure, "", "The last element.";
+    ListAddFirst = "List"."addFirst"(E element) -> Void, Writes, "", "Inserts in front.";
+    ListAddLast = "List"."addLast"(E element) -> Void, Writes, "", "Appends.";
+    ListRemoveFirst = "List"."removeFirst"() -> E, Writes, "", "Removes and gives the first element.";
+    ListRemoveLast = "List"."removeLast"() -> E, Writes, "", "Removes and gives the last element.";
+    StackPush = "Stack"."push"(E element) -> E, Writes, "", "Appends.";
+    StackPop = "Stack"."pop"() -> E, Writes, "", "Removes and gives the last element.";
+    StackPeek = "Stack"."peek"() -> E, Pure, "", "The last element.";
     StackEmpty = "Stack"."empty"() -> Boolean, Pure, "", "Whether there is none.";
-    CollectionIterator = "Collection"."iterator"() -> Class(ClassId::Iterator), Pure, "", "Goes through the elements.";
+    CollectionIterator = "Collection"."iterator"() -> ValueType::Of(ClassId::Iterator, 0), Pure, "", "Goes through the elements.";
     IteratorHasNext = "Iterator"."hasNext"() -> Boolean, Pure, "", "Whether there is a further one.";
-    IteratorNext = "Iterator"."next"() -> Object, Writes, "", "The next one.";
-    SetAdd = "Set"."add"(Object element) -> Boolean, Writes, "", "Adds it if it is not there; whether it was not.";
+    IteratorNext = "Iterator"."next"() -> E, Writes, "", "The next one.";
+    SetAdd = "Set"."add"(E element) -> Boolean, Writes, "", "Adds it if it is not there; whether it was not.";
     SetRemove = "Set"."remove"(Object element) -> Boolean, Writes, "", "Removes it; whether it was there.";
     SetClear = "Set"."clear"() -> Void, Writes, "", "Removes all.";
     TokensHasMore = "StringTokenizer"."hasMoreTokens"() -> Boolean, Pure, "", "Whether there is a further word.";
@@ -195,15 +256,7 @@ signatures! {
     FileName = "File"."getName"() -> String, Pure, "", "The name without folders.";
     FilePath = "File"."getPath"() -> String, Pure, "", "The path.";
     FileAbsolutePath = "File"."getAbsolutePath"() -> String, Pure, "", "The path.";
-    FileExists = "File"."exists"() -> Boolean, Writes, "", "Whether there is such a file or folder.";
-    FileIsDirectory = "File"."isDirectory"() -> Boolean, Writes, "", "Whether it is a folder.";
-    FileIsFile = "File"."isFile"() -> Boolean, Writes, "", "Whether it is a file.";
-    FileList = "File"."list"() -> StringArray, Writes, "", "Names of what the folder holds, sorted; null if it is no folder.";
-    FileListFiles = "File"."listFiles"() -> FileArray, Writes, "", "What the folder holds, sorted by name; null if it is no folder.";
-    FileParent = "File"."getParent"() -> String, Pure, "", "The path of the folder it stands in; null if none is named.";
-    FileMkdir = "File"."mkdir"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
-    FileMkdirs = "File"."mkdirs"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
-    FileCreate = "File"."createNewFile"() -> Boolean, Writes, "", "Whether it was not there yet; it is made when it is written.";
+    FileExists = "File"."exists"() -> Boolean, Writes, "", "Whether it can be read.";
     ReaderReadLine = "Reader"."readLine"() -> String, Writes, "", "The next line, null at the end.";
     ReaderRead = "Reader"."read"() -> Int, Writes, "", "The next character, -1 at the end.";
     ReaderClose = "Reader"."close"() -> Void, Writes, "", "Ends reading.";
@@ -217,6 +270,8 @@ signatures! {
     WriterPrint = "Writer"."print"(Text value) -> Void, Writes, "", "Writes a value.";
     WriterPrintln = "Writer"."println"() -> Void, Writes, "", "Ends the line.";
     WriterPrintlnText = "Writer"."println"(Text value) -> Void, Writes, "", "Writes a value and ends the line.";
+    WriterPrintf = "Writer"."printf"(String pattern, Objects values) -> Class(ClassId::Writer), Writes, "", "Writes values after a pattern such as `%.2f`.";
+    WriterFormat = "Writer"."format"(String pattern, Objects values) -> Class(ClassId::Writer), Writes, "", "Writes values after a pattern such as `%.2f`.";
     WriterWrite = "Writer"."write"(String text) -> Void, Writes, "", "Writes a text.";
     WriterWriteChar = "Writer"."write"(Int code) -> Void, Writes, "", "Writes a character by its number.";
     WriterAppend = "Writer"."append"(Text value) -> Class(ClassId::Writer), Writes, "", "Writes a value.";
@@ -234,26 +289,69 @@ signatures! {
     LightModelSensed = "LightModel"."getSensedIrradiance"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
     LightModelSensed3d = "LightModel"."getSensedIrradiance3d"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
 
-    MapPut = "Map"."put"(Object key, Object value) -> Object, Writes, "", "Stores under a key, gives the old value.";
-    MapGet = "Map"."get"(Object key) -> Object, Pure, "", "Value of a key, null if none.";
+    MapPut = "Map"."put"(E key, V value) -> V, Writes, "", "Stores under a key, gives the old value.";
+    MapGet = "Map"."get"(Object key) -> V, Pure, "", "Value of a key, null if none.";
     MapContainsKey = "Map"."containsKey"(Object key) -> Boolean, Pure, "", "Whether the key has a value.";
-    MapRemove = "Map"."remove"(Object key) -> Object, Writes, "", "Removes a key, gives its value.";
+    MapRemove = "Map"."remove"(Object key) -> V, Writes, "", "Removes a key, gives its value.";
     MapSize = "Map"."size"() -> Int, Pure, "", "Number of keys.";
     MapIsEmpty = "Map"."isEmpty"() -> Boolean, Pure, "", "Whether there is no key.";
     MapClear = "Map"."clear"() -> Void, Writes, "", "Removes all.";
-    MapKeySet = "Map"."keySet"() -> COLLECTION, Pure, "", "The keys, in Java's order.";
-    MapValues = "Map"."values"() -> COLLECTION, Pure, "", "The values, in the order of their keys.";
+    MapKeySet = "Map"."keySet"() -> ValueType::Of(ClassId::Set, 0), Pure, "", "The keys, in Java's order.";
+    MapValues = "Map"."values"() -> ValueType::Of(ClassId::Collection, 1), Pure, "", "The values, in the order of their keys.";
+    MapEntrySet = "Map"."entrySet"() -> ValueType::Entries, Pure, "", "Keys with their values, in Java's order.";
+    MapPutAll = "Map"."putAll"(Class(ClassId::Map) map) -> Void, Writes, "", "Stores all that is in another map.";
+    MapPutIfAbsent = "Map"."putIfAbsent"(E key, V value) -> V, Writes, "", "Stores under a key that has no value; gives the value it had.";
+    TreeMapFirstKey = "TreeMap"."firstKey"() -> E, Pure, "", "The least key.";
+    TreeMapLastKey = "TreeMap"."lastKey"() -> E, Pure, "", "The greatest key.";
+    EntryKey = "Entry"."getKey"() -> E, Pure, "", "The key.";
+    EntryValue = "Entry"."getValue"() -> V, Pure, "", "The value.";
+    EntrySetValue = "Entry"."setValue"(V value) -> V, Writes, "", "Stores another value under the key, gives the old one.";
     MapContainsValue = "Map"."containsValue"(Object value) -> Boolean, Pure, "", "Whether some key has an equal value.";
-    MapGetOrDefault = "Map"."getOrDefault"(Object key, Object fallback) -> Object, Pure, "", "Value of a key, or another one if it has none.";
+    MapGetOrDefault = "Map"."getOrDefault"(Object key, V fallback) -> V, Pure, "", "Value of a key, or another one if it has none.";
 
-    BufferAppend = "StringBuffer"."append"(Text value) -> Class(ClassId::StringBuffer), Writes, "", "Appends the text of a value.";
+    BufferAppend = "StringBuffer"."append"(Text value) -> Same, Writes, "", "Appends the text of a value.";
     BufferLength = "StringBuffer"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
-    BuilderAppend = "StringBuilder"."append"(Text value) -> Class(ClassId::StringBuilder), Writes, "", "Appends the text of a value.";
-    BuilderLength = "StringBuilder"."length"() -> Int, Pure, "", "Number of UTF-16 units.";
+    BufferCharAt = "StringBuffer"."charAt"(Int index) -> Char, Pure, "", "Character at an index from 0.";
+    BufferInsert = "StringBuffer"."insert"(Int index, Text value) -> Same, Writes, "", "Inserts the text of a value at an index.";
+    BufferReverse = "StringBuffer"."reverse"() -> Same, Writes, "", "Turns the text round.";
+    BufferSetLength = "StringBuffer"."setLength"(Int length) -> Void, Writes, "", "Cuts the text off, or fills it up with characters 0.";
+    BufferDeleteCharAt = "StringBuffer"."deleteCharAt"(Int index) -> Same, Writes, "", "Removes the character at an index.";
+    BufferDelete = "StringBuffer"."delete"(Int from, Int to) -> Same, Writes, "", "Removes what stands from an index up to another.";
+    BufferReplace = "StringBuffer"."replace"(Int from, Int to, String text) -> Same, Writes, "", "Replaces what stands from an index up to another.";
+    BufferSetCharAt = "StringBuffer"."setCharAt"(Int index, Char c) -> Void, Writes, "", "Replaces the character at an index.";
+    BufferIndexOf = "StringBuffer"."indexOf"(String text) -> Int, Pure, "", "First place of a text, -1 if none.";
+    BufferLastIndexOf = "StringBuffer"."lastIndexOf"(String text) -> Int, Pure, "", "Last place of a text, -1 if none.";
+    BufferSubstring = "StringBuffer"."substring"(Int from) -> String, Pure, "", "From an index to the end.";
+    BufferSubstringTo = "StringBuffer"."substring"(Int from, Int to) -> String, Pure, "", "From an index up to another.";
+    BufferIsEmpty = "StringBuffer"."isEmpty"() -> Boolean, Pure, "", "Whether its length is 0.";
 
+    ComparatorCompare = "Comparator"."compare"(Object a, Object b) -> Int, Pure, "", "Below, at or above 0 as the first stands before, at or after the second.";
+    ComparatorReversed = "Comparator"."reversed"() -> COMPARATOR, Pure, "", "The other way round.";
+    ComparableCompareTo = "Comparable"."compareTo"(Object value) -> Int, Pure, "", "Below, at or above 0 as it stands before, at or after another.";
+    NumberCompareTo = "Number"."compareTo"(Object value) -> Int, Pure, "", "-1, 0 or 1 as it is less, equal or greater.";
+    DoubleIsNaNValue = "Number"."isNaN"() -> Boolean, Pure, "", "Whether it is not a number.";
+    RuntimeTotalMemory = "Runtime"."totalMemory"() -> Long, Writes, "bytes", "What texts, arrays and collections may take.";
+    RuntimeMaxMemory = "Runtime"."maxMemory"() -> Long, Writes, "bytes", "What texts, arrays and collections may take.";
+    RuntimeFreeMemory = "Runtime"."freeMemory"() -> Long, Writes, "bytes", "What of it is left.";
+    RuntimeProcessors = "Runtime"."availableProcessors"() -> Int, Pure, "", "1: a model runs in one thread.";
+    RuntimeGc = "Runtime"."gc"() -> Void, Pure, "", "Nothing.";
+    DateTime = "Date"."getTime"() -> Long, Pure, "ms", "Milliseconds since 1970.";
+    DateFormat = "SimpleDateFormat"."format"(Class(ClassId::Date) date) -> String, Pure, "", "Text of a moment.";
+    DecimalFormat = "DecimalFormat"."format"(Double x) -> String, Pure, "", "Text of a number.";
+
+    FunctionEvaluate = "Function"."=evaluate"(Object value) -> Object, Writes, "", "The value for an argument.";
     ThrowableMessage = "Throwable"."getMessage"() -> String, Pure, "", "Its message.";
     ThrowableSetMessage = "Throwable"."=message"(String message) -> Void, Writes, "", "Sets its message.";
+    ThrowableLocalizedMessage = "Throwable"."getLocalizedMessage"() -> String, Pure, "", "Its message.";
     ThrowablePrintStackTrace = "Throwable"."printStackTrace"() -> Void, Prints, "", "Prints it.";
+    FileIsDirectory = "File"."isDirectory"() -> Boolean, Writes, "", "Whether it is a folder.";
+    FileIsFile = "File"."isFile"() -> Boolean, Writes, "", "Whether it is a file.";
+    FileList = "File"."list"() -> StringArray, Writes, "", "Names of what the folder holds, sorted; null if it is no folder.";
+    FileListFiles = "File"."listFiles"() -> FileArray, Writes, "", "What the folder holds, sorted by name; null if it is no folder.";
+    FileParent = "File"."getParent"() -> String, Pure, "", "The path of the folder it stands in; null if none is named.";
+    FileMkdir = "File"."mkdir"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
+    FileMkdirs = "File"."mkdirs"() -> Boolean, Writes, "", "True: folders are made when a file is written.";
+    FileCreate = "File"."createNewFile"() -> Boolean, Writes, "", "Whether it was not there yet; it is made when it is written.";
 }
 
 static BY_NAME: LazyLock<Index<MethodId>> =

@@ -25,9 +25,38 @@ pub enum Type {
     Instance(TypeId),
     /// A library class.
     Class(ClassId),
+    /// A library class with what its type parameters stand for: `HashMap<String, Float>`.
+    Generic(ClassId, Box<[Type]>),
     Array(Box<Type>),
     /// `Object`: anything, boxed.
     Object,
+}
+
+impl Type {
+    /// The library class, if it is one.
+    pub fn class(&self) -> Option<ClassId> {
+        match self {
+            Self::Class(class) | Self::Generic(class, _) => Some(*class),
+            _ => None,
+        }
+    }
+
+    /// What the type parameter with this number stands for, `Object` where nothing was said.
+    pub fn argument(&self, index: usize) -> Self {
+        match self {
+            Self::Generic(_, args) => args.get(index).cloned().unwrap_or(Self::Object),
+            _ => Self::Object,
+        }
+    }
+
+    /// A library class with what its type parameters stand for; plain where they all are `Object`.
+    pub fn generic(class: ClassId, args: Vec<Self>) -> Self {
+        if args.iter().all(|arg| *arg == Self::Object) {
+            Self::Class(class)
+        } else {
+            Self::Generic(class, args.into())
+        }
+    }
 }
 
 /// A type as the tables of the library write it; [`ValueType::to_type`] makes a [`Type`] of it.
@@ -52,12 +81,24 @@ pub enum ValueType {
     FloatArray,
     StringArray,
     FileArray,
+    ObjectArray,
+    /// Last parameter only: any number of values, or an array of them.
+    Objects,
+    /// Results only: the type of the receiver, or of the first argument of a function.
+    Same,
+    /// What the type parameter with this number of the receiver (or of the first argument) stands for, `Object` if unknown.
+    Argument(usize),
+    /// Results only: this class with the type parameter of that number of the receiver (or of the first argument).
+    Of(ClassId, usize),
+    /// Results only: the entries of a map.
+    Entries,
 }
 
 impl ValueType {
-    /// The type of such a value; `node` is the type that all nodes extend.
-    pub fn to_type(self, node: TypeId) -> Type {
+    /// The type of such a value; `node` is the type that all nodes extend, `of` the receiver or first argument.
+    pub fn to_type(self, node: TypeId, of: Option<&Type>) -> Type {
         let array = |element| Type::Array(Box::new(element));
+        let argument = |index| of.map_or(Type::Object, |of| of.argument(index));
         match self {
             Self::Void => Type::Void,
             Self::Boolean => Type::Boolean,
@@ -74,6 +115,14 @@ impl ValueType {
             Self::FloatArray => array(Type::Float),
             Self::StringArray => array(Type::String),
             Self::FileArray => array(Type::Class(ClassId::File)),
+            Self::ObjectArray | Self::Objects => array(Type::Object),
+            Self::Same => of.cloned().unwrap_or(Type::Object),
+            Self::Argument(index) => argument(index),
+            Self::Of(class, index) => Type::generic(class, vec![argument(index)]),
+            Self::Entries => {
+                let entry = Type::generic(ClassId::Entry, vec![argument(0), argument(1)]);
+                Type::generic(ClassId::Set, vec![entry])
+            }
         }
     }
 }

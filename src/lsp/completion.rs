@@ -182,7 +182,7 @@ impl List<'_> {
     fn members(&mut self, ty: &Type, is_dot: bool) {
         match ty {
             Type::Node(id) => self.node_members(*id, is_dot),
-            Type::Class(class) => self.class_members(*class),
+            Type::Class(class) | Type::Generic(class, _) => self.class_members(*class),
             Type::String => self.methods_of(&["String", "Object"]),
             Type::Array(_) => self.push(
                 Rank::Member,

@@ -331,7 +331,7 @@ fn classes(page: &mut String) {
     heading(page, "## Classes");
     let is_light = |class: ClassId| class.is_a(ClassId::Light) || class == ClassId::LightModel;
     members_of(page, |class| !is_light(class) && !is_appearance(class));
-    for owner in ["String", "Object"] {
+    for owner in ["String", "Object", "Array", "Node"] {
         let rows = own_calls(owner);
         if !rows.is_empty() {
             page.push_str(&format!("\n#### `{owner}`\n\n"));

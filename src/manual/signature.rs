@@ -22,6 +22,13 @@ pub fn type_name(ty: ValueType) -> &'static str {
         ValueType::FloatArray => "float[]",
         ValueType::StringArray => "String[]",
         ValueType::FileArray => "File[]",
+        ValueType::ObjectArray => "Object[]",
+        ValueType::Objects => "Object...",
+        ValueType::Same => "the same type",
+        ValueType::Argument(0) => "its element type",
+        ValueType::Argument(_) => "its value type",
+        ValueType::Of(class, _) => class.name(),
+        ValueType::Entries => "Set",
     }
 }
 
@@ -119,6 +126,7 @@ pub fn constant(row: &LibraryConstant) -> String {
         format!("{}.", row.owner)
     };
     let (ty, value) = match row.value {
+        ConstantValue::Null(class) => (class.name(), "null".into()),
         ConstantValue::Int(v) => ("int", v.to_string()),
         ConstantValue::Long(v) => ("long", v.to_string()),
         ConstantValue::Float(v) => ("float", format!("{v:?}")),

@@ -86,6 +86,11 @@ pub const KEYWORDS: &[Word] = &[
         "What a `switch` does with all other values.",
     ),
     word(
+        "assert",
+        "assert n > 0;",
+        "What the writer is sure of; not looked at, as in Java if nobody asks for it.",
+    ),
+    word(
         "break",
         "break;",
         "Leaves the innermost loop or `switch`, or the one with the label.",

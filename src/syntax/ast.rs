@@ -123,16 +123,27 @@ pub struct Class {
     pub modifiers: Modifiers,
     /// Its name.
     pub name: Ident,
+    /// `<T, U extends V>`: the names of its type parameters.
+    pub type_params: Vec<Ident>,
     /// `extends`
     pub extends: Option<TypeRef>,
     /// `implements`
     pub implements: Vec<TypeRef>,
     /// Enum constants.
-    pub constants: Vec<Ident>,
+    pub constants: Vec<EnumConstant>,
     /// Body.
     pub members: Vec<Item>,
     /// The whole declaration.
     pub span: Span,
+}
+
+/// `LEAF(0.5)` of an enum.
+#[derive(Clone, Debug)]
+pub struct EnumConstant {
+    /// Its name.
+    pub name: Ident,
+    /// What its constructor is given.
+    pub args: Vec<Expr>,
 }
 
 /// A method, or a constructor (no `result`).
@@ -176,11 +187,13 @@ pub struct Field {
     pub init: Option<Expr>,
 }
 
-/// A type as written: `int`, `float[]`, `de.grogra.rgg.LightModel`, `ArrayList<Integer>` (arguments dropped).
+/// A type as written: `int`, `float[]`, `de.grogra.rgg.LightModel`, `ArrayList<Integer>`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypeRef {
     /// `a.b.C` as its parts.
     pub path: Vec<Ident>,
+    /// `<A, B>`; a wildcard is its bound, or has no path.
+    pub args: Vec<TypeRef>,
     /// Number of `[]`.
     pub dims: u8,
     /// Its place.

@@ -32,7 +32,16 @@ fn names(path: &[Ident]) -> String {
 }
 
 pub(super) fn ty(ty: &TypeRef) -> String {
-    format!("{}{}", names(&ty.path), "[]".repeat(usize::from(ty.dims)))
+    let args = if ty.args.is_empty() {
+        String::new()
+    } else {
+        format!("<{}>", join(&ty.args, ", ", self::ty))
+    };
+    format!(
+        "{}{args}{}",
+        names(&ty.path),
+        "[]".repeat(usize::from(ty.dims))
+    )
 }
 
 fn modifiers(modifiers: &Modifiers) -> String {
@@ -99,7 +108,15 @@ pub(super) fn item(item: &Item) -> String {
                 .extends
                 .as_ref()
                 .map_or_else(String::new, |parent| format!(" extends {}", ty(parent)));
-            let constants = join(&class.constants, ", ", |name| name.name.clone());
+            let constants = join(&class.constants, ", ", |constant| {
+                let args = exprs(&constant.args);
+                let args = if args.is_empty() {
+                    args
+                } else {
+                    format!("({args})")
+                };
+                format!("{}{args}", constant.name.name)
+            });
             let members = join(&class.members, " ", self::item);
             let head = format!(
                 "{}{} {}",

@@ -103,7 +103,7 @@ fn modules() {
         ),
         (
             "module A implements B, C<D> { int x, y = 2; { x = 1; } A() { } module I; };",
-            "module A() implements B, C { int x; int y = 2; { (x = 1); } A() {  } module I(); };",
+            "module A() implements B, C<D> { int x; int y = 2; { (x = 1); } A() {  } module I(); };",
         ),
         (
             "module L(float s) ==> RL(60) P(s).(setShader(G));",
@@ -152,7 +152,7 @@ fn classes_methods_and_fields() {
         ),
         (
             "HashMap<String, List<Map<A, B[]>>>[] m = new HashMap<>();",
-            "HashMap[] m = new HashMap();",
+            "HashMap<String, List<Map<A, B[]>>>[] m = new HashMap();",
         ),
     ];
     for (text, expected) in cases {
@@ -165,7 +165,7 @@ fn statements() {
     let cases = [
         (
             "final int a = 1, b[] = {2}; Foo<A> c; a.b.C[] d;",
-            "final int a = 1, final int[] b = {2}; Foo c; a.b.C[] d;",
+            "final int a = 1, final int[] b = {2}; Foo<A> c; a.b.C[] d;",
         ),
         (
             "if (a) b(); else if (c) ; else { }",
@@ -261,7 +261,7 @@ fn operands() {
         ("(a) instanceof B", "(a instanceof B)"),
         (
             "(float[]) f + (Foo<A>[]) g",
-            "(((float[]) f) + ((Foo[]) g))",
+            "(((float[]) f) + ((Foo<A>[]) g))",
         ),
         ("(T) (* A *)", "((T) (* A *))"),
         ("(1, 2)", "comma(1, 2)"),
@@ -270,7 +270,7 @@ fn operands() {
         ("new float[n][2 * m][]", "new float[n][(2 * m)][]"),
         (
             "new a.B<C>(1).(x = 1, setY(2)).z()",
-            "new a.B(1).((x = 1); setY(2);).z()",
+            "new a.B<C>(1).((x = 1); setY(2);).z()",
         ),
         (
             "f[de.grogra.Attributes.RADIUS]",

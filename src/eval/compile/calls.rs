@@ -303,23 +303,6 @@ fn set_field(field: places::Field, value: Code, span: Span) -> FillNode {
     }
 }
 
-/// What the method `toString()` of the model gives for a node or an object.
-pub(super) fn text_of(
-    p: &Program,
-    m: &mut Machine,
-    this: Value,
-    method: MethodId,
-    span: Span,
-) -> Result<Value, Trap> {
-    let mark = m.stack.mark();
-    match this {
-        Value::Node(node) => Some(node).push(&mut m.stack),
-        object => object.push(&mut m.stack),
-    }
-    p.run_method(method, m, mark, span)?;
-    Ok(Value::take_result(&mut m.stack))
-}
-
 fn invoke_static(method: MethodId, args: Vec<Code>, span: Span) -> Invoke {
     Box::new(move |p, m| {
         let mark = m.stack.mark();

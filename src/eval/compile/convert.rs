@@ -30,7 +30,9 @@ pub(super) fn is_primitive(ty: &Type) -> bool {
         Type::Boolean | Type::Byte | Type::Short | Type::Char | Type::Int => true,
         Type::Long | Type::Float | Type::Double => true,
         Type::Void | Type::Null | Type::String | Type::Node(_) => false,
-        Type::Class(_) | Type::Instance(_) | Type::Array(_) | Type::Object => false,
+        Type::Class(_) | Type::Generic(..) | Type::Instance(_) | Type::Array(_) | Type::Object => {
+            false
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Scope, calls};
-use crate::check::model::{Constant, Expr, ExprKind, MethodId, Type};
+use crate::check::model::{Constant, Expr, ExprKind, Type};
 use crate::diag::Span;
 use crate::eval::code::{Code, Eval, FromCode, Source};
 use crate::eval::machine::Machine;
@@ -134,48 +134,17 @@ impl Scope<'_> {
             });
         }
         let span = part.span;
-        if let Some(own_text) = self.own_texts(&part.ty) {
+        if matches!(part.ty, Type::String) || super::convert::is_primitive(&part.ty) {
             return Box::new(move |p, m, out| {
                 let value = value.get(p, m)?;
-                let ty = value.type_in(&m.graph);
-                match ty.and_then(|ty| *own_text.get(usize::from(ty.0))?) {
-                    Some(method) => {
-                        let text = calls::text_of(p, m, value, method, span)?;
-                        m.append_text(&text, out);
-                    }
-                    None => m.append_text(&value, out),
-                }
+                m.append_text(&value, out);
                 Ok(())
             });
         }
         Box::new(move |p, m, out| {
             let value = value.get(p, m)?;
-            m.append_text(&value, out);
-            Ok(())
+            p.tell(m, &value, out, span)
         })
-    }
-
-    /// The `toString()` of each type of the model, where values of type `ty` may have one.
-    fn own_texts(&self, ty: &Type) -> Option<Vec<Option<MethodId>>> {
-        if !matches!(ty, Type::Node(_) | Type::Instance(_) | Type::Object) {
-            return None;
-        }
-        let own = |wanted: TypeId| {
-            self.model.methods.iter().position(|method| {
-                method.name == "toString" && method.params.is_empty() && method.this == Some(wanted)
-            })
-        };
-        let inherited = |ty: TypeId| {
-            let mut lineage = std::iter::successors(Some(ty), |&t| self.model.types[t].parent);
-            lineage.find_map(own).map(|at| MethodId(at as u32))
-        };
-        let texts: Vec<_> = self
-            .model
-            .types
-            .iter()
-            .map(|(ty, _)| inherited(ty))
-            .collect();
-        texts.iter().any(Option::is_some).then_some(texts)
     }
 
     fn conditional(&self, condition: &Expr, branches: [&Expr; 2], ty: &Type) -> Code {
@@ -271,7 +240,9 @@ impl Scope<'_> {
             Type::Object => Box::new(|_, v| !v.is_null()),
             Type::String => Box::new(|_, v| v.as_text().is_some()),
             Type::Array(_) => Box::new(|_, v| v.as_array().is_some()),
-            Type::Class(class) => Box::new(move |_, v| v.class().is_some_and(|c| c.is_a(class))),
+            Type::Class(class) | Type::Generic(class, _) => {
+                Box::new(move |_, v| v.class().is_some_and(|c| c.is_a(class)))
+            }
             Type::Node(ty) => {
                 Box::new(move |graph, v| matches!(v, Value::Node(n) if graph.is_a(*n, ty)))
             }
@@ -330,7 +301,7 @@ fn bad_cast(machine: &Machine, value: &Value, wanted: &str, span: Span) -> Trap 
 /// The name of a type for messages.
 pub(super) fn type_name(ty: &Type) -> Arc<str> {
     match ty {
-        Type::Class(class) => class.name().into(),
+        Type::Class(class) | Type::Generic(class, _) => class.name().into(),
         Type::String => "String".into(),
         Type::Array(_) => "array".into(),
         Type::Node(TypeId(_)) => "node".into(),

@@ -71,11 +71,8 @@ impl Scope<'_> {
     pub(super) fn new_object(&self, id: ConstructorId, args: &[Expr], e: &Expr) -> Code {
         let (maker, span): (Maker, Span) = (constructor(id), e.span);
         let args = self.values(args);
-        let class = match e.ty {
-            Type::Class(class) => class,
-            // `new String()`: the maker does not look at it.
-            _ => ClassId::Throwable,
-        };
+        // Of `new String()` the maker does not look at it.
+        let class = e.ty.class().unwrap_or(ClassId::Throwable);
         Code::Value(Source::code(move |program, machine| {
             with_arguments(&args, program, machine, |machine, args| {
                 maker(

@@ -1,8 +1,8 @@
 //! Lists and maps.
 
-use super::{Arguments, Context, new_object};
+use super::{Arguments, Context, keyed, new_object};
 use crate::eval::machine::out_of_bounds;
-use crate::eval::map::JavaMap;
+use crate::eval::map::{JavaMap, Order};
 use crate::eval::object::{Data, List};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
@@ -34,8 +34,11 @@ pub(super) fn make_map(_: &mut Context<'_>, class: ClassId, _: &[Value]) -> Resu
 }
 
 fn map_of(class: ClassId) -> JavaMap {
-    let keeps_order = matches!(class, ClassId::LinkedHashMap | ClassId::LinkedHashSet);
-    JavaMap::new(keeps_order)
+    JavaMap::new(match class {
+        ClassId::LinkedHashMap | ClassId::LinkedHashSet => Order::Inserted,
+        ClassId::TreeMap | ClassId::TreeSet => Order::Natural,
+        _ => Order::Hashed,
+    })
 }
 
 /// `new HashSet()`
@@ -53,16 +56,45 @@ pub(super) fn make_set_copy(
     class: ClassId,
     args: &[Value],
 ) -> Result<Value, Trap> {
-    let mut map = map_of(class);
-    for value in elements(cx, args, 0)? {
-        map.insert(value, Value::Boolean(true));
+    let set = make_map_set(cx, class, &[])?;
+    let values = elements(cx, args, 0)?;
+    add_values(cx, &set, values)?;
+    Ok(set)
+}
+
+/// `new HashMap(map)`
+pub(super) fn make_map_copy(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let map = make_map(cx, class, &[])?;
+    keyed::put_all(cx, &[map.clone(), args.at(0).clone()])?;
+    Ok(map)
+}
+
+/// Adds values to a list or a set; whether anything changed.
+pub(super) fn add_values(
+    cx: &mut Context<'_>,
+    to: &Value,
+    values: Vec<Value>,
+) -> Result<Value, Trap> {
+    let mut is_changed = false;
+    for value in values {
+        let args = [to.clone(), value];
+        let is_set = matches!(&*cx.object(&args, 0)?.lock(), Data::Set(_));
+        let added = if is_set {
+            keyed::set_add(cx, &args)?
+        } else {
+            add(cx, &args)?
+        };
+        is_changed |= added.as_boolean() == Some(true);
     }
-    pay_map(cx, &mut map)?;
-    Ok(new_object(class, Data::Set(Box::new(map))))
+    Ok(Value::Boolean(is_changed))
 }
 
 /// Takes a share of the memory budget when a map has outgrown the one it has.
-fn pay_map(cx: &Context<'_>, map: &mut JavaMap) -> Result<(), Trap> {
+pub(super) fn pay_map(cx: &Context<'_>, map: &mut JavaMap) -> Result<(), Trap> {
     let needed = ENTRY_BYTES * map.len() as u64;
     if needed > map.charge.bytes() {
         map.charge = cx
@@ -73,41 +105,8 @@ fn pay_map(cx: &Context<'_>, map: &mut JavaMap) -> Result<(), Trap> {
     Ok(())
 }
 
-pub(super) fn set_add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        let is_new = map.get(args.at(1)).is_none();
-        if is_new {
-            map.insert(args.at(1).clone(), Value::Boolean(true));
-            pay_map(cx, map)?;
-        }
-        Ok(Value::Boolean(is_new))
-    })
-}
-
-pub(super) fn set_remove(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(Value::Boolean(map.remove(args.at(1)).is_some()))
-    })
-}
-
-pub(super) fn contains_value(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        let is_there = map
-            .entries()
-            .iter()
-            .any(|(_, value)| value.equals(args.at(1)));
-        Ok(Value::Boolean(is_there))
-    })
-}
-
-pub(super) fn get_or_default(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(map.get(args.at(1)).unwrap_or(args.at(2)).clone())
-    })
-}
-
 /// The element at an index counted from the end that is asked for; there must be one.
-fn end(cx: &Context<'_>, values: &[Value], is_last: bool) -> Result<usize, Trap> {
+pub(super) fn end(cx: &Context<'_>, values: &[Value], is_last: bool) -> Result<usize, Trap> {
     if values.is_empty() {
         return Err(cx.exception(ClassId::NoSuchElementException, "the list is empty"));
     }
@@ -166,7 +165,7 @@ pub(super) fn elements(cx: &Context<'_>, args: &[Value], index: usize) -> Result
 }
 
 /// Works on the elements of the list that is the receiver.
-fn on_list<T: Default>(
+pub(super) fn on_list<T: Default>(
     cx: &Context<'_>,
     args: &[Value],
     f: impl FnOnce(&mut List) -> Result<T, Trap>,
@@ -178,7 +177,7 @@ fn on_list<T: Default>(
 }
 
 /// Takes a share of the memory budget when a list has outgrown the one it has; it then has room to double.
-fn pay(cx: &Context<'_>, list: &mut List) -> Result<(), Trap> {
+pub(super) fn pay(cx: &Context<'_>, list: &mut List) -> Result<(), Trap> {
     let needed = ELEMENT_BYTES * list.values.len() as u64;
     if needed > list.charge.bytes() {
         list.charge = cx
@@ -189,7 +188,7 @@ fn pay(cx: &Context<'_>, list: &mut List) -> Result<(), Trap> {
     Ok(())
 }
 
-fn checked(cx: &Context<'_>, index: i32, n: usize) -> Result<usize, Trap> {
+pub(super) fn checked(cx: &Context<'_>, index: i32, n: usize) -> Result<usize, Trap> {
     let place = usize::try_from(index).ok().filter(|&i| i < n);
     place.ok_or_else(|| {
         out_of_bounds(
@@ -216,13 +215,11 @@ pub(super) fn is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
 }
 
 pub(super) fn contains(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let wanted = args.at(1);
-    if let Data::Set(map) = &*cx.object(args, 0)?.lock() {
-        return Ok(Value::Boolean(map.get(wanted).is_some()));
+    let is_set = matches!(&*cx.object(args, 0)?.lock(), Data::Set(_));
+    if is_set {
+        return keyed::contains(cx, args);
     }
-    Ok(Value::Boolean(
-        elements(cx, args, 0)?.iter().any(|v| v.equals(wanted)),
-    ))
+    Ok(Value::Boolean(index_of_equal(cx, args)?.is_some()))
 }
 
 pub(super) fn add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -276,9 +273,14 @@ pub(super) fn remove_at(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, T
     })
 }
 
-fn index_of_equal(cx: &Context<'_>, args: &[Value]) -> Result<Option<usize>, Trap> {
+pub(super) fn index_of_equal(cx: &mut Context<'_>, args: &[Value]) -> Result<Option<usize>, Trap> {
     let wanted = args.at(1);
-    Ok(elements(cx, args, 0)?.iter().position(|v| v.equals(wanted)))
+    for (i, value) in elements(cx, args, 0)?.iter().enumerate() {
+        if cx.equal(wanted, value)? {
+            return Ok(Some(i));
+        }
+    }
+    Ok(None)
 }
 
 pub(super) fn remove(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -305,7 +307,7 @@ pub(super) fn clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
 }
 
 /// Works on the map that is the receiver.
-fn on_map<T: Default>(
+pub(super) fn on_map<T: Default>(
     cx: &Context<'_>,
     args: &[Value],
     f: impl FnOnce(&mut JavaMap) -> Result<T, Trap>,
@@ -314,73 +316,6 @@ fn on_map<T: Default>(
         Data::Map(map) | Data::Set(map) => f(map),
         _ => Ok(T::default()),
     }
-}
-
-pub(super) fn put(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        let old = map.insert(args.at(1).clone(), args.at(2).clone());
-        pay_map(cx, map)?;
-        Ok(old.unwrap_or_default())
-    })
-}
-
-pub(super) fn get_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(map.get(args.at(1)).cloned().unwrap_or_default())
-    })
-}
-
-pub(super) fn contains_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(Value::Boolean(map.get(args.at(1)).is_some()))
-    })
-}
-
-pub(super) fn remove_key(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(map.remove(args.at(1)).unwrap_or_default())
-    })
-}
-
-pub(super) fn map_size(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| {
-        Ok(Value::Int(i32::try_from(map.len()).unwrap_or(i32::MAX)))
-    })
-}
-
-pub(super) fn map_is_empty(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    on_map(cx, args, |map| Ok(Value::Boolean(map.is_empty())))
-}
-
-pub(super) fn map_clear(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let old = on_map(cx, args, |map| {
-        let empty = JavaMap::new(map.keeps_order());
-        Ok(std::mem::replace(map, empty))
-    })?;
-    drop(old);
-    Ok(Value::Null)
-}
-
-pub(super) fn key_set(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let keys = on_map(cx, args, |map| {
-        Ok(map
-            .entries()
-            .into_iter()
-            .map(|(key, _)| key.clone())
-            .collect())
-    })?;
-    list_of(cx, keys)
-}
-
-pub(super) fn map_values(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let values = on_map(cx, args, |map| {
-        Ok(map
-            .entries()
-            .into_iter()
-            .map(|(_, value)| value.clone())
-            .collect())
-    })?;
-    list_of(cx, values)
 }
 
 pub(super) fn list_of(cx: &Context<'_>, values: Vec<Value>) -> Result<Value, Trap> {

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, collections, data, files, light, more, new_object, random, shaders,
-    strings, vectors,
+    Arguments, Context, Maker, buffers, collections, data, files, light, moments, more, new_object,
+    random, shaders, strings, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -50,7 +50,14 @@ pub fn constructor(id: C) -> Maker {
         C::RgbColorZero => shaders::make_color,
         C::ShaderOfColor => shaders::make_of_color,
         C::LightModelLeast => light::make_model,
-        C::Buffer | C::BufferText | C::Builder | C::BuilderText => strings::make_buffer,
+        C::Buffer | C::BufferText | C::BufferCapacity => buffers::make,
+        C::Date | C::DateOf => moments::make_date,
+        C::SimpleDateFormat | C::DecimalFormat => moments::make_pattern,
+        C::StringOfChars => strings::make_of_chars,
+        C::TreeSet | C::SetCapacity => collections::make_map_set,
+        C::TreeSetCopy => collections::make_set_copy,
+        C::MapCopy | C::TreeMapCopy => collections::make_map_copy,
+        C::MapLoad | C::TreeMap => collections::make_map,
         C::Throwable => throwable,
         C::ThrowableText => throwable_with_text,
         C::String => strings::make_empty,

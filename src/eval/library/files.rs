@@ -271,6 +271,13 @@ pub(super) fn print(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap>
     append(cx, args, &text)
 }
 
+/// `writer.printf(pattern, values)`, which gives the writer.
+pub(super) fn print_formatted(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let text = super::format::formatted(cx, &args[1..])?;
+    append(cx, args, &text)?;
+    Ok(args.at(0).clone())
+}
+
 /// `writer.append(value)`, which gives the writer.
 pub(super) fn print_chain(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     print(cx, args)?;

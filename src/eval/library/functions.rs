@@ -4,7 +4,10 @@ use super::Behaviour::{
     self, Double1, Double2, DoubleToLong, Float1, Float2, FloatToInt, Int1, Int2, Long1, Long2,
     Native,
 };
-use super::{data, format, more, numbers, places, precise, random, shaders, strings, system};
+use super::{
+    arrays, data, exact, format, moments, numbers, ordering, places, precise, random, shaders,
+    strings, system, values,
+};
 use crate::library::FunctionId as F;
 use crate::math::functions as math;
 
@@ -43,15 +46,31 @@ pub fn function(id: F) -> Behaviour {
         F::DefaultView => Native(system::view),
         F::Stop => Native(system::stop),
         F::Exit => Native(system::exit),
-        F::ArraysToString => Native(more::array_text),
-        F::ArraysSort => Native(more::sort_array),
-        F::ArraysFill => Native(more::fill_array),
-        F::ArraysAsList => Native(more::as_list),
-        F::CollectionsSort => Native(more::sort),
-        F::CollectionsReverse => Native(more::reverse),
-        F::CollectionsShuffle => Native(more::shuffle),
-        F::CollectionsMin => Native(more::least),
-        F::CollectionsMax => Native(more::greatest),
+        F::ArraysToString => Native(arrays::text),
+        F::ArraysSort | F::ArraysSortBy => Native(arrays::sort),
+        F::ArraysSortPart => Native(arrays::sort_range),
+        F::ArraysFill => Native(arrays::fill),
+        F::ArraysFillPart => Native(arrays::fill_range),
+        F::ArraysAsList => Native(arrays::as_list),
+        F::ArraysCopyOf => Native(arrays::copy_of),
+        F::ArraysCopyOfRange => Native(arrays::copy_of_range),
+        F::ArraysEquals => Native(arrays::equal),
+        F::ArraysHashCode => Native(arrays::hash_code),
+        F::ArraysDeepToString => Native(arrays::deep_text),
+        F::ArraysBinarySearch => Native(arrays::binary_search),
+        F::ArrayCopy => Native(arrays::copy_elements),
+        F::CollectionsSort | F::CollectionsSortBy => Native(ordering::sort),
+        F::CollectionsReverse => Native(ordering::reverse),
+        F::CollectionsReverseOrder => Native(ordering::reverse_order),
+        F::CollectionsShuffle | F::CollectionsShuffleBy => Native(ordering::shuffle),
+        F::CollectionsMin => Native(ordering::least),
+        F::CollectionsMax => Native(ordering::greatest),
+        F::CollectionsSwap => Native(ordering::swap),
+        F::CollectionsFrequency => Native(ordering::frequency),
+        F::CollectionsAddAll => Native(ordering::add_all),
+        F::CollectionsUnmodifiable => Native(numbers::same),
+        F::CollectionsEmptyList => Native(ordering::empty_list),
+        F::CollectionsNCopies => Native(ordering::copies),
         F::AttributeRadius => Native(places::radius),
         F::AttributeDtgColor => Native(places::color_index),
         F::AttributeShader => Native(places::shader),
@@ -101,20 +120,75 @@ pub fn function(id: F) -> Behaviour {
         F::SignumDouble => Double1(numbers::signum_double),
         F::FloorDivInt => Native(numbers::floor_div),
         F::FloorModInt => Native(numbers::floor_mod),
+        F::FloorDivLong => Native(exact::floor_div),
+        F::FloorModLong => Native(exact::floor_mod),
+        F::AddExactInt => Native(exact::add_int),
+        F::AddExactLong => Native(exact::add_long),
+        F::SubtractExactInt => Native(exact::subtract_int),
+        F::SubtractExactLong => Native(exact::subtract_long),
+        F::MultiplyExactInt => Native(exact::multiply_int),
+        F::MultiplyExactLong => Native(exact::multiply_long),
+        F::ToIntExact => Native(exact::to_int),
+        F::Fma => Native(exact::fma),
+        F::Ulp => Double1(exact::ulp),
+        F::NextUp => Double1(f64::next_up),
+        F::NextDown => Double1(f64::next_down),
+        F::CopySign => Double2(f64::copysign),
+        F::IeeeRemainder => Double2(exact::ieee_remainder),
         F::MathRandom => Native(random::uniform_double),
         F::ParseInt | F::IntegerValueOfText => Native(numbers::parse_int),
-        F::ParseLong => Native(numbers::parse_long),
+        F::ParseIntRadix => Native(exact::parse_int),
+        F::IntegerToStringRadix => Native(exact::to_text),
+        F::IntegerToOctalString => Native(exact::to_octal),
+        F::IntegerCompare | F::LongCompare => Native(exact::compare_whole),
+        F::IntegerSignum => Int1(i32::signum),
+        F::IntegerBitCount => Int1(|x| x.count_ones() as i32),
+        F::IntegerMax => Int2(i32::max),
+        F::IntegerMin => Int2(i32::min),
+        F::IntegerSum => Int2(i32::wrapping_add),
+        F::LongMax => Long2(i64::max),
+        F::LongMin => Long2(i64::min),
+        F::LongToHexString => Native(exact::long_to_hex),
+        F::LongToBinaryString => Native(exact::long_to_binary),
+        F::FloatCompare | F::DoubleCompare => Native(exact::compare_floating),
+        F::FloatMax => Float2(numbers::max_float),
+        F::FloatMin => Float2(numbers::min_float),
+        F::FloatIsFinite | F::DoubleIsFinite => Native(exact::is_finite),
+        F::FloatToIntBits => Native(exact::float_bits),
+        F::IntBitsToFloat => Native(exact::float_of_bits),
+        F::DoubleMax => Double2(numbers::max_double),
+        F::DoubleMin => Double2(numbers::min_double),
+        F::DoubleSum => Double2(|a, b| a + b),
+        F::DoubleToLongBits => Native(exact::double_bits),
+        F::LongBitsToDouble => Native(exact::double_of_bits),
+        F::IsUpperCase => Native(exact::is_upper_case),
+        F::IsLowerCase => Native(exact::is_lower_case),
+        F::IsLetterOrDigit => Native(exact::is_letter_or_digit),
+        F::CharToUpperCase => Native(exact::to_upper_case),
+        F::CharToLowerCase => Native(exact::to_lower_case),
+        F::GetNumericValue => Native(exact::numeric_value),
+        F::ObjectsEquals => Native(values::equal),
+        F::LineSeparator => Native(moments::line_separator),
+        F::SystemProperty => Native(moments::property),
+        F::Sleep | F::SetDefaultLocale => Native(system::nothing),
+        F::GetRuntime => Native(moments::runtime),
+        F::SystemOutPrintf | F::SystemOutPrintfLocale | F::SystemOutFormat => Native(format::print),
+        F::StringValueOfChars => Native(strings::of_chars),
+        F::StringJoin | F::StringJoinAll => Native(strings::join),
+        F::ParseLong | F::LongValueOfText => Native(numbers::parse_long),
         F::ParseFloat | F::FloatValueOfText => Native(numbers::parse_float),
         F::ParseDouble | F::DoubleValueOfText => Native(numbers::parse_double),
-        F::ParseBoolean => Native(numbers::parse_boolean),
-        F::IntegerValueOf | F::LongValueOf | F::FloatValueOf | F::DoubleValueOf => {
-            Native(numbers::same)
-        }
+        F::ParseBoolean | F::BooleanValueOfText => Native(numbers::parse_boolean),
+        F::IntegerValueOf
+        | F::LongValueOf
+        | F::FloatValueOf
+        | F::DoubleValueOf
+        | F::BooleanValueOf
+        | F::CharacterValueOf => Native(numbers::same),
         F::IntegerToHexString => Native(numbers::to_hex),
         F::IntegerToBinaryString => Native(numbers::to_binary),
         F::FloatIsNaN | F::DoubleIsNaN => Native(numbers::is_nan),
         F::FloatIsInfinite | F::DoubleIsInfinite => Native(numbers::is_infinite),
-        F::DoubleCompare => Native(numbers::compare),
         F::IsDigit => Native(strings::is_digit),
         F::IsLetter => Native(strings::is_letter),
         F::IsWhitespace => Native(strings::is_whitespace),
@@ -125,14 +199,7 @@ pub fn function(id: F) -> Behaviour {
         | F::BooleanToString
         | F::CharacterToString
         | F::StringValueOf => Native(strings::value_of),
-        F::StringFormat1
-        | F::StringFormat2
-        | F::StringFormat3
-        | F::StringFormat4
-        | F::StringFormat5
-        | F::StringFormat6
-        | F::StringFormat7
-        | F::StringFormat8 => Native(format::format),
+        F::StringFormat | F::StringFormatLocale => Native(format::format),
         F::CurrentTimeMillis | F::NanoTime => Native(system::time),
     }
 }

@@ -2,8 +2,8 @@
 
 use super::Behaviour::{self, Native};
 use super::{
-    Arguments, Context, collections, data, files, getter, light, more, numbers, random, setter,
-    shaders, strings, system, vectors,
+    Arguments, Context, arrays, buffers, collections, data, deques, files, getter, keyed, light,
+    moments, more, numbers, ordering, random, setter, shaders, strings, system, values, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
@@ -14,7 +14,18 @@ use crate::library::MethodId as M;
 pub fn method(id: M) -> Behaviour {
     Native(match id {
         M::ObjectEquals => equals,
-        M::ObjectToString => strings::value_of,
+        M::ObjectToString => strings::to_string,
+        M::ObjectGetClass => values::class_of,
+        M::ArrayClone => arrays::copy,
+        M::ClassSimpleName => values::simple_name,
+        M::ClassName => values::full_name,
+        M::NodeId => values::id,
+        M::NodeSuccessor => values::successor,
+        M::NodePredecessor => values::predecessor,
+        M::NodeBranch => values::branch,
+        M::NodeAxisParent => values::axis_parent,
+        M::NodeChildCount => values::n_children,
+        M::NodeIsAncestorOf => values::is_ancestor,
         M::ObjectHashCode => hash_code,
         M::StringLength => strings::length,
         M::StringCharAt => strings::char_at,
@@ -130,6 +141,41 @@ pub fn method(id: M) -> Behaviour {
         M::ListRemove => collections::remove,
         M::ListIndexOf => collections::index_of,
         M::ListClear => collections::clear,
+        M::StringStrip => strings::strip,
+        M::StringIsBlank => strings::is_blank,
+        M::StringRepeat => strings::repeat,
+        M::StringCompareToIgnoreCase => strings::compare_ignoring_case,
+        M::StringIntern => numbers::same,
+        M::StringStartsWithAt => strings::starts_with_at,
+        M::CollectionToArray | M::CollectionToArrayOf => deques::to_array,
+        M::CollectionContainsAll => deques::contains_all,
+        M::CollectionAddAll => deques::add_all,
+        M::CollectionRemoveAll => deques::remove_all,
+        M::CollectionRetainAll => deques::retain_all,
+        M::CollectionForEach => deques::for_each,
+        M::ListInsertAll => deques::insert_all,
+        M::ListLastIndexOf => deques::last_index_of,
+        M::ListSubList => deques::sub_list,
+        M::ListSortBy => ordering::sort,
+        M::ListEnsureCapacity | M::ListTrimToSize | M::RuntimeGc => system::nothing,
+        M::VectorFirstElement | M::QueueElement => collections::first,
+        M::VectorLastElement => collections::last,
+        M::VectorInsertElementAt => deques::insert_element,
+        M::VectorSetElementAt => deques::set_element,
+        M::VectorRemoveElementAt => collections::remove_at,
+        M::VectorRemoveElement => collections::remove,
+        M::VectorRemoveAll => collections::clear,
+        M::QueueOffer | M::DequeOfferLast => collections::add,
+        M::QueuePoll | M::DequePollFirst => deques::poll_first,
+        M::QueuePeek | M::DequePeekFirst => deques::peek_first,
+        M::QueueRemove | M::DequePop => collections::remove_first,
+        M::DequePush | M::DequeOfferFirst => deques::offer_first,
+        M::DequePollLast => deques::poll_last,
+        M::DequePeekLast => deques::peek_last,
+        M::StackSearch => deques::search,
+        M::TreeSetFirst | M::TreeMapFirstKey => keyed::first_key,
+        M::TreeSetLast | M::TreeMapLastKey => keyed::last_key,
+        M::IteratorRemove => more::remove,
         M::StringReplaceAll => strings::replace_all,
         M::StringReplaceFirst => strings::replace_first,
         M::StringIndexOfCharFrom => strings::index_of_char_from,
@@ -147,9 +193,9 @@ pub fn method(id: M) -> Behaviour {
         M::IteratorHasNext | M::TokensHasMore => more::has_next,
         M::IteratorNext | M::TokensNext => more::next,
         M::TokensCount => more::count_tokens,
-        M::SetAdd => collections::set_add,
-        M::SetRemove => collections::set_remove,
-        M::SetClear => collections::map_clear,
+        M::SetAdd => keyed::set_add,
+        M::SetRemove => keyed::set_remove,
+        M::SetClear => keyed::map_clear,
         M::DatasetResolve => data::same,
         M::DatasetClear => data::clear,
         M::DatasetSetTitle => data::set_title,
@@ -197,20 +243,51 @@ pub fn method(id: M) -> Behaviour {
         M::LightModelComputeForced | M::LightModelSensed | M::LightModelSensed3d => {
             light::unsupported
         }
-        M::MapContainsValue => collections::contains_value,
-        M::MapGetOrDefault => collections::get_or_default,
-        M::MapPut => collections::put,
-        M::MapGet => collections::get_key,
-        M::MapContainsKey => collections::contains_key,
-        M::MapRemove => collections::remove_key,
-        M::MapSize => collections::map_size,
-        M::MapIsEmpty => collections::map_is_empty,
-        M::MapClear => collections::map_clear,
-        M::MapKeySet => collections::key_set,
-        M::MapValues => collections::map_values,
-        M::BufferAppend | M::BuilderAppend => strings::append,
-        M::BufferLength | M::BuilderLength => strings::buffer_length,
-        M::ThrowableMessage => message,
+        M::MapContainsValue => keyed::contains_value,
+        M::MapGetOrDefault => keyed::get_or_default,
+        M::MapPut => keyed::put,
+        M::MapGet => keyed::get,
+        M::MapContainsKey => keyed::contains,
+        M::MapRemove => keyed::remove,
+        M::MapSize => keyed::map_size,
+        M::MapIsEmpty => keyed::map_is_empty,
+        M::MapClear => keyed::map_clear,
+        M::MapKeySet => keyed::key_set,
+        M::MapValues => keyed::map_values,
+        M::MapEntrySet => keyed::entry_set,
+        M::MapPutAll => keyed::put_all,
+        M::MapPutIfAbsent => keyed::put_if_absent,
+        M::EntryKey => keyed::entry_key,
+        M::EntryValue => keyed::entry_value,
+        M::EntrySetValue => keyed::entry_set_value,
+        M::BufferAppend => buffers::append,
+        M::BufferLength => buffers::length,
+        M::BufferCharAt => buffers::char_at,
+        M::BufferInsert => buffers::insert,
+        M::BufferReverse => buffers::reverse,
+        M::BufferSetLength => buffers::set_length,
+        M::BufferDeleteCharAt => buffers::delete_char_at,
+        M::BufferDelete => buffers::delete,
+        M::BufferReplace => buffers::replace,
+        M::BufferSetCharAt => buffers::set_char_at,
+        M::BufferIndexOf => buffers::index_of,
+        M::BufferLastIndexOf => buffers::last_index_of,
+        M::BufferSubstring => buffers::substring,
+        M::BufferSubstringTo => buffers::substring_to,
+        M::BufferIsEmpty => buffers::is_empty,
+        M::ComparatorCompare => ordering::compare,
+        M::ComparatorReversed => ordering::reversed,
+        M::ComparableCompareTo | M::NumberCompareTo => ordering::compare_to,
+        M::DoubleIsNaNValue => numbers::is_nan,
+        M::RuntimeTotalMemory | M::RuntimeMaxMemory => moments::total_memory,
+        M::RuntimeFreeMemory => moments::free_memory,
+        M::RuntimeProcessors => moments::n_processors,
+        M::DateTime => moments::time,
+        M::DateFormat => moments::format_date,
+        M::DecimalFormat => moments::format_number,
+        M::FunctionEvaluate => values::evaluate,
+        M::WriterPrintf | M::WriterFormat => files::print_formatted,
+        M::ThrowableMessage | M::ThrowableLocalizedMessage => message,
         M::ThrowableSetMessage => set_message,
         M::ThrowablePrintStackTrace => print_stack_trace,
     })
@@ -229,14 +306,18 @@ fn equals(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     if matches!(args.at(0), Value::Null) {
         return Err(Trap::null("call `equals` of an object", cx.span));
     }
-    Ok(Value::Boolean(args.at(0).equals(args.at(1))))
+    Ok(Value::Boolean(cx.equal(args.at(0), args.at(1))?))
 }
 
 fn hash_code(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     if matches!(args.at(0), Value::Null) {
         return Err(Trap::null("call `hashCode` of an object", cx.span));
     }
-    Ok(Value::Int(args.at(0).hash_code()))
+    Ok(Value::Int(cx.program.hash(
+        cx.machine,
+        args.at(0),
+        cx.span,
+    )?))
 }
 
 /// The message of an exception, null if it has none.

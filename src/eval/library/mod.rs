@@ -5,12 +5,20 @@
 //! and gives boxed values, receiver first.
 
 mod collections;
+mod values;
+mod ordering;
+mod keyed;
+mod exact;
+mod deques;
+mod buffers;
+mod arrays;
 mod constructors;
 pub mod data;
 pub mod files;
 mod format;
 mod functions;
 mod light;
+pub mod moments;
 mod methods;
 pub mod more;
 mod numbers;
@@ -151,6 +159,19 @@ impl Context<'_> {
             Value::Node(node) => Ok(*node),
             _ => Err(Trap::null("use a node", self.span)),
         }
+    }
+
+    /// Appends the text of any value.
+    fn tell(&mut self, value: &Value, out: &mut String) -> Result<(), Trap> {
+        self.program.tell(self.machine, value, out, self.span)?;
+        self.machine
+            .check_text(out.len())
+            .map_err(|trap| trap.at(self.span))
+    }
+
+    /// `a.equals(b)`
+    fn equal(&mut self, a: &Value, b: &Value) -> Result<bool, Trap> {
+        self.program.equal(self.machine, a, b, self.span)
     }
 
     /// A new text.

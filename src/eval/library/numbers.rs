@@ -179,14 +179,6 @@ pub(super) fn is_infinite(_: &mut Context<'_>, args: &[Value]) -> Result<Value, 
     Ok(Value::Boolean(args.double(0).is_infinite()))
 }
 
-/// Java's total order is Rust's, but for NaNs of different bits.
-pub(super) fn compare(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let plain = |x: f64| if x.is_nan() { f64::NAN } else { x };
-    Ok(Value::Int(
-        plain(args.double(0)).total_cmp(&plain(args.double(1))) as i32,
-    ))
-}
-
 pub(super) fn int_value(_: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     Ok(Value::Int(args.int(0)))
 }

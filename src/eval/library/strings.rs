@@ -1,10 +1,8 @@
 //! Texts, characters, and buffers of text.
 
-use super::{Arguments, Context, new_object};
+use super::{Arguments, Context};
 use crate::eval::array::{Array, Elements};
 use crate::eval::machine::out_of_bounds;
-use crate::eval::memory::Charge;
-use crate::eval::object::Data;
 use crate::eval::text::{Text, char_of};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
@@ -45,8 +43,16 @@ pub(super) fn value_of(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Tr
         return Ok(args.at(0).clone());
     }
     let mut text = String::new();
-    cx.machine.append_text(args.at(0), &mut text);
+    cx.tell(args.at(0), &mut text)?;
     cx.new_text(text)
+}
+
+/// `object.toString()`
+pub(super) fn to_string(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    if args.at(0).is_null() {
+        return Err(Trap::null("call `toString` of an object", cx.span));
+    }
+    value_of(cx, args)
 }
 
 pub(super) fn length(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
@@ -366,46 +372,82 @@ pub(super) fn is_whitespace(_: &mut Context<'_>, args: &[Value]) -> Result<Value
     Ok(Value::Boolean(char_of(args.int(0) as u16).is_whitespace()))
 }
 
-pub(super) fn make_buffer(
+/// The text of an array of characters.
+fn text_of_chars(cx: &Context<'_>, value: &Value) -> Result<String, Trap> {
+    let Value::Array(array) = value else {
+        return Err(Trap::null("use an array of characters", cx.span));
+    };
+    let units = (0..array.len()).filter_map(|i| array.get(i)?.as_int());
+    let units: Vec<u16> = units.map(|unit| unit as u16).collect();
+    Ok(String::from_utf16_lossy(&units))
+}
+
+/// `String.valueOf(chars)`
+pub(super) fn of_chars(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text(text_of_chars(cx, args.at(0))?)
+}
+
+/// `new String(chars)`
+pub(super) fn make_of_chars(
     cx: &mut Context<'_>,
-    class: ClassId,
+    _: ClassId,
     args: &[Value],
 ) -> Result<Value, Trap> {
-    let text = if args.is_empty() {
-        ""
-    } else {
-        other(cx, &[Value::Null, args.at(0).clone()]).map(|_| args.text(0))?
+    of_chars(cx, args)
+}
+
+/// `String.join(between, texts)`, of values or of a collection.
+pub(super) fn join(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let parts = match args.at(1) {
+        Value::Array(array) => super::arrays::all(array),
+        _ => super::collections::elements(cx, args, 1)?,
     };
-    Ok(new_object(
-        class,
-        Data::Buffer(text.to_owned(), Charge::none()),
+    let mut text = String::new();
+    for (i, part) in parts.iter().enumerate() {
+        if i > 0 {
+            text.push_str(args.text(0));
+        }
+        cx.tell(part, &mut text)?;
+    }
+    cx.new_text(text)
+}
+
+/// Java strips all white space of Unicode, where `trim` takes everything up to the blank.
+pub(super) fn strip(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    cx.new_text(receiver(cx, args)?.as_str().trim())
+}
+
+pub(super) fn is_blank(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(Value::Boolean(
+        receiver(cx, args)?.as_str().trim().is_empty(),
     ))
 }
 
-pub(super) fn append(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let mut added = String::new();
-    cx.machine.append_text(args.at(1), &mut added);
-    if let Data::Buffer(text, charge) = &mut *cx.object(args, 0)?.lock() {
-        let n_bytes = text.len() + added.len();
-        cx.machine
-            .check_text(n_bytes)
-            .map_err(|trap| trap.at(cx.span))?;
-        // The share grows in doublings, as the buffer does.
-        if n_bytes as u64 > charge.bytes() {
-            *charge = cx
-                .machine
-                .charge(2 * n_bytes as u64)
-                .map_err(|trap| trap.at(cx.span))?;
-        }
-        text.push_str(&added);
-    }
-    Ok(args.at(0).clone())
+pub(super) fn repeat(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let text = receiver(cx, args)?.as_str();
+    let Ok(n) = usize::try_from(args.int(1)) else {
+        let message = format!("count is negative: {}", args.int(1));
+        return Err(cx.exception(ClassId::IllegalArgumentException, message));
+    };
+    let n_bytes = text.len().saturating_mul(n);
+    cx.machine
+        .check_text(n_bytes)
+        .map_err(|trap| trap.at(cx.span))?;
+    cx.new_text(text.repeat(n))
 }
 
-pub(super) fn buffer_length(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let length = match &*cx.object(args, 0)?.lock() {
-        Data::Buffer(text, _) => text.encode_utf16().count(),
-        _ => 0,
-    };
-    Ok(Value::Int(i32::try_from(length).unwrap_or(i32::MAX)))
+pub(super) fn compare_ignoring_case(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (a, b) = (receiver(cx, args)?.as_str(), other(cx, args)?);
+    let folded = [a, b].map(|text| Value::text(text.to_uppercase().to_lowercase()));
+    compare_to(cx, &folded)
+}
+
+/// `text.startsWith(prefix, at)`
+pub(super) fn starts_with_at(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let (text, prefix) = (receiver(cx, args)?, other(cx, args)?);
+    let at = usize::try_from(args.int(2)).ok();
+    let rest = at.and_then(|at| text.slice(at, text.len()));
+    Ok(Value::Boolean(
+        rest.is_some_and(|rest| rest.starts_with(prefix)),
+    ))
 }

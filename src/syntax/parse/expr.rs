@@ -148,6 +148,7 @@ impl Reader<'_> {
         let start = self.span(&operator);
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span: start,
         };
@@ -291,6 +292,7 @@ impl Reader<'_> {
         match rest {
             Some(tail) if tail.as_rule() == Rule::lambda_tail => {
                 let ty = TypeRef {
+                    args: vec![],
                     dims: 0,
                     span: name.span,
                     path: vec![name],
@@ -310,6 +312,7 @@ impl Reader<'_> {
     fn typed_lambda(&self, pair: Pair<'_, Rule>) -> Expr {
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span: self.span(&pair),
         };
@@ -357,6 +360,7 @@ impl Reader<'_> {
         let span = self.span(&pair);
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span,
         };
@@ -364,6 +368,7 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::primitive | Rule::qualified => ty = self.plain_type(kid),
+                Rule::type_args => ty.args = self.type_args(kid),
                 Rule::args => args = Some(self.args(kid)),
                 Rule::dim => dims = dims.saturating_add(1),
                 Rule::length => lengths.extend(kids(kid).next().map(|length| self.expr(length))),

@@ -4,8 +4,8 @@ use super::grammar::Rule;
 use super::{Reader, kids};
 use crate::diag::{Diagnostic, Span};
 use crate::syntax::ast::{
-    Block, Class, Expr, Extends, Field, Ident, Import, Item, Method, Modifiers, Module,
-    ModuleParam, Param, Stmt, StmtKind, TypeRef,
+    Block, Class, EnumConstant, Expr, Extends, Field, Ident, Import, Item, Method, Modifiers,
+    Module, ModuleParam, Param, Stmt, StmtKind, TypeRef,
 };
 use pest::iterators::Pair;
 
@@ -130,6 +130,7 @@ impl Reader<'_> {
         }
         let ty = ty.unwrap_or(TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span: name.span,
         });
@@ -139,6 +140,7 @@ impl Reader<'_> {
     fn extends(&self, pair: Pair<'_, Rule>) -> Extends {
         let parent = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span: self.span(&pair),
         };
@@ -160,15 +162,11 @@ impl Reader<'_> {
 
     pub(super) fn class(&self, pair: Pair<'_, Rule>, modifiers: Modifiers) -> Class {
         let keyword = pair.clone().into_inner().next();
-        let own_name = pair
-            .clone()
-            .into_inner()
-            .find(|kid| kid.as_rule() == Rule::ident);
-        let name_start = own_name.map_or(0, |name| name.as_span().start());
         let mut class = Class {
             keyword: self.ident(keyword.as_ref().unwrap_or(&pair)),
             modifiers,
             name: self.first_ident(&pair),
+            type_params: vec![],
             extends: None,
             implements: vec![],
             constants: vec![],
@@ -177,19 +175,45 @@ impl Reader<'_> {
         };
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::class_parents => class.extends = kids(kid).next().map(|ty| self.type_ref(ty)),
+                Rule::type_args => {
+                    class.type_params = kids(kid).map(|p| self.type_param(p)).collect()
+                }
+                // An interface can extend several.
+                Rule::class_parents => {
+                    let mut parents = kids(kid).map(|ty| self.type_ref(ty));
+                    class.extends = parents.next();
+                    class.implements.extend(parents);
+                }
                 Rule::implements => {
-                    class.implements = kids(kid).map(|ty| self.type_ref(ty)).collect();
+                    class
+                        .implements
+                        .extend(kids(kid).map(|ty| self.type_ref(ty)));
                 }
-                Rule::ident if kid.as_span().start() != name_start => {
-                    class.constants.push(self.ident(&kid));
-                }
+                Rule::enum_constant => class.constants.push(EnumConstant {
+                    name: self.first_ident(&kid),
+                    args: kids(kid)
+                        .find(|part| part.as_rule() == Rule::args)
+                        .map_or(vec![], |args| self.args(args)),
+                }),
                 Rule::item => self.item(kid, &mut class.members),
                 Rule::body => self.body(kid, &mut class.members),
                 _ => {}
             }
         }
         class
+    }
+
+    /// The name of a type parameter, `T` of `T` and of `T extends Node`.
+    fn type_param(&self, pair: Pair<'_, Rule>) -> Ident {
+        let of_bound = pair
+            .clone()
+            .into_inner()
+            .find(|kid| kid.as_rule() == Rule::bound);
+        self.first_ident(
+            &of_bound
+                .or_else(|| pair.clone().into_inner().next())
+                .unwrap_or(pair),
+        )
     }
 
     fn member(&self, pair: Pair<'_, Rule>, modifiers: Modifiers, into: &mut Vec<Item>) {
@@ -318,6 +342,7 @@ impl Reader<'_> {
         let mut param = Param {
             ty: TypeRef {
                 path: vec![],
+                args: vec![],
                 dims: 0,
                 span: name.span,
             },

@@ -145,6 +145,7 @@ impl<'s> Reader<'s> {
         let span = self.span(&pair);
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span,
         };
@@ -152,6 +153,31 @@ impl<'s> Reader<'s> {
             match kid.as_rule() {
                 Rule::dim => ty.dims = ty.dims.saturating_add(1),
                 Rule::primitive | Rule::qualified => ty.path = self.path(kid),
+                Rule::type_args => ty.args = self.type_args(kid),
+                _ => {}
+            }
+        }
+        ty
+    }
+
+    /// The arguments of a generic type, at any depth.
+    fn type_args(&self, pair: Pair<'_, Rule>) -> Vec<TypeRef> {
+        kids(pair).map(|arg| self.type_arg(arg)).collect()
+    }
+
+    fn type_arg(&self, pair: Pair<'_, Rule>) -> TypeRef {
+        let span = self.span(&pair);
+        let mut ty = TypeRef {
+            path: vec![],
+            args: vec![],
+            dims: 0,
+            span,
+        };
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::dim => ty.dims = ty.dims.saturating_add(1),
+                Rule::primitive | Rule::qualified => ty.path = self.path(kid),
+                Rule::inner_args | Rule::innermost_args => ty.args = self.type_args(kid),
                 _ => {}
             }
         }
@@ -163,6 +189,7 @@ impl<'s> Reader<'s> {
         let span = self.span(&pair);
         TypeRef {
             path: self.path(pair),
+            args: vec![],
             dims: 0,
             span,
         }
@@ -209,6 +236,7 @@ fn is_keyword(which: Rule) -> bool {
     matches!(
         which,
         R::EOI
+            | R::kw_assert
             | R::kw_break
             | R::kw_case
             | R::kw_catch
@@ -233,6 +261,7 @@ fn is_keyword(which: Rule) -> bool {
             | R::kw_static
             | R::kw_super
             | R::kw_switch
+            | R::kw_synchronized
             | R::kw_this
             | R::kw_throw
             | R::kw_throws

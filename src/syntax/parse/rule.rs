@@ -129,6 +129,7 @@ impl Reader<'_> {
             label: None,
             name: TypeRef {
                 path: vec![],
+                args: vec![],
                 dims: 0,
                 span,
             },

@@ -23,6 +23,11 @@ impl Reader<'_> {
             Rule::break_statement => StmtKind::Break(self.target(pair)),
             Rule::continue_statement => StmtKind::Continue(self.target(pair)),
             Rule::try_statement => self.try_statement(pair),
+            Rule::assertion => StmtKind::Empty,
+            Rule::synchronized => {
+                let body = kids(pair).find(|kid| kid.as_rule() == Rule::block);
+                StmtKind::Block(body.map_or_else(Block::default, |body| self.block(body)))
+            }
             Rule::local_class => self.local_class(pair),
             Rule::labeled => return self.labeled(pair),
             Rule::local => {
@@ -108,6 +113,7 @@ impl Reader<'_> {
         let mut modifiers = Modifiers::default();
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span: self.span(&pair),
         };
@@ -145,6 +151,7 @@ impl Reader<'_> {
         let mut modifiers = Modifiers::default();
         let mut ty = TypeRef {
             path: vec![],
+            args: vec![],
             dims: 0,
             span,
         };
@@ -233,13 +240,18 @@ impl Reader<'_> {
 
     fn try_statement(&self, pair: Pair<'_, Rule>) -> StmtKind {
         let (mut body, mut catches, mut finally) = (Block::default(), vec![], None);
+        let mut resources = vec![];
         for kid in kids(pair) {
             match kid.as_rule() {
+                Rule::resources => {
+                    resources.extend(kids(kid).flat_map(|part| self.variables(part)))
+                }
                 Rule::catch_clause => catches.push(self.catch_clause(kid)),
                 Rule::finally_clause => finally = kids(kid).next().map(|block| self.block(block)),
                 _ => body = self.block(kid),
             }
         }
+        let body = resources.into_iter().rev().fold(body, with_resource);
         StmtKind::Try {
             body,
             catches,
@@ -272,6 +284,32 @@ impl Reader<'_> {
 
     pub(super) fn args(&self, pair: Pair<'_, Rule>) -> Vec<Expr> {
         kids(pair).map(|arg| self.range(arg)).collect()
+    }
+}
+
+/// `{ R r = …; try { body } finally { r.close(); } }`
+fn with_resource(body: Block, resource: LocalVar) -> Block {
+    let span = body.span;
+    let at = |kind| Stmt { kind, span };
+    let value = |kind| Expr { kind, span };
+    let close = Ident {
+        name: "close".into(),
+        span: resource.name.span,
+    };
+    let object = value(ExprKind::Name(resource.name.name.clone()));
+    let callee = value(ExprKind::Member(Box::new(object), close));
+    let call = value(ExprKind::Call(Box::new(callee), vec![]));
+    let guarded = StmtKind::Try {
+        body,
+        catches: vec![],
+        finally: Some(Block {
+            stmts: vec![at(StmtKind::Expr(call))],
+            span,
+        }),
+    };
+    Block {
+        stmts: vec![at(StmtKind::Local(vec![resource])), at(guarded)],
+        span,
     }
 }
 
