@@ -89,6 +89,49 @@ fn loops_make_what_they_say() {
 }
 
 #[test]
+fn break_ends_the_right_hand_side_of_its_match() {
+    check(&[
+        (
+            "A(1) A(3) A(2)",
+            "A(x) ==> B(x) if (x > 1) (break) C(x);",
+            "SB1C1B3B2",
+        ),
+        (
+            "A(1) A(3)",
+            "A(x) ==> B(x) { if (x > 1) break; } C(x);",
+            "SB1C1B3",
+        ),
+        (
+            "A(1) A(3)",
+            "A(x) ==> for (int i : 1:9) (if (i > x) (break) B(i)) C(0);",
+            "SB1C0B1B2B3C0",
+        ),
+    ]);
+}
+
+#[test]
+fn a_query_assigns_each_of_its_values_and_the_last_stays() {
+    let text = "module A(int v); int n; protected void init() {
+  [ Axiom ==> A(1) A(2) A(3); ] derive();
+  n = (* A *)[v]; A a; a = (* x:A, (x.v < 3) *); int none = 7; none = (* A(9) *)[v]; print(n + \" \" + a.v + \" \" + none); }";
+    assert_eq!(
+        Model::new(text).unwrap().grown(0).unwrap().printed(),
+        "3 2 7"
+    );
+}
+
+#[test]
+fn any_value_can_be_passed_as_a_text() {
+    let text = "module N(String s); String twice(String s) { return s + s; } int twice(int n) { return 2 * n; }
+protected void init() { [ Axiom ==> N(2.5) TextLabel(7); ] derive();
+  print(twice(1.5) + \" \" + twice(3) + \" \" + first((* N *)).s + \" \" + first((* TextLabel *)).caption); }";
+    assert_eq!(
+        Model::new(text).unwrap().grown(0).unwrap().printed(),
+        "1.51.5 6 2.5 7"
+    );
+}
+
+#[test]
 fn a_model_can_stop_growing() {
     let text = "module A(int v); protected void init() [ Axiom ==> A(0); ]
 public void run() [ a:A ::> { a.v++; if (a.v == 3) { stop(); print(a.v); } } ]";
@@ -388,6 +431,13 @@ fn every_closure_is_walked() {
             ("S (-->){3,} b:B", "5 10"),
             ("S (-->){3,4} b:C", "3 6"),
             ("D(8) (<--)+ b:C", "6"),
+            // `:( … )`: a way ends where a match was found, which conditions have a say in.
+            ("S (-->)+ :(b:B)", "2 4"),
+            ("S (-->)+ :(b:B), (b.v > 2)", "4"),
+            ("S (-->)+ :(b:B), (b.v > 4)", "5 10"),
+            ("A(1) (-->)+ :(b:C)", "3 6"),
+            ("B(10) (<--)+ b:A", "9 1"),
+            ("B(10) (<--)+ :(b:A)", "9"),
             // Several edges in a row, and ways of several edges.
             ("A > > b:C", "6"),
             ("A(1) +> > b:C", "3"),

@@ -337,13 +337,9 @@ impl Checker<'_> {
     }
 }
 
-/// Whether a statement may be done for each of several values. `x = (* Leaf *).area;` would keep the last one only: that is
-/// taken for a slip.
-pub(super) fn repeats(e: &ast::Expr) -> bool {
-    match &e.kind {
-        ast::ExprKind::Assign(None, target, _) => begins_with_query(target),
-        _ => true,
-    }
+/// Whether a statement that is done for each of several values keeps the last one only: `x = (* Leaf *).area;`
+pub(super) fn keeps_last(e: &ast::Expr) -> bool {
+    matches!(&e.kind, ast::ExprKind::Assign(None, target, _) if !begins_with_query(target))
 }
 
 /// Whether an expression is an attribute or a member of what a query finds.

@@ -34,6 +34,7 @@ impl Checker<'_> {
             kind: at.default,
             way: EdgeWay::Forward,
             repeat: ONCE,
+            is_minimal: false,
             choice: at.choice,
         };
         let added = match edge.map(|edge| (edge, &edge.kind)) {

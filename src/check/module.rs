@@ -178,7 +178,7 @@ impl Checker<'_> {
         let (file, type_id) = (self.modules[index].file, self.modules[index].type_id);
         self.cx = Context::new(file, Some((type_id, Type::Node(type_id))));
         self.cx.result = Some(Type::Void);
-        let body = self.productions(body);
+        let body = self.whole_production(body);
         let frame = self.finish(Body::Instantiation(type_id));
         Instantiation {
             frame,

@@ -130,6 +130,10 @@ impl Checker<'_> {
 
     fn param_fit(&self, param: &Wanted, arg: &Type) -> Option<Fit> {
         match param {
+            // As in GroIMP, any value can be passed where a text is wanted.
+            Wanted::Value(Type::String) if *arg != Type::Void => {
+                Some(self.fit(arg, &Type::String).unwrap_or(Fit::Text))
+            }
             Wanted::Value(ty) => self.fit(arg, ty),
             Wanted::Boxed(ty) => self.fit(arg, ty).or_else(|| self.fit(arg, &unboxed(ty)?)),
             Wanted::Text if *arg == Type::Void => None,
@@ -178,6 +182,9 @@ impl Checker<'_> {
             });
         }
         let pass_one = |(param, arg): (&Wanted, Expr)| match param {
+            Wanted::Value(Type::String) if self.fit(&arg.ty, &Type::String).is_none() => {
+                self.text(arg)
+            }
             Wanted::Value(ty) => self.convert(arg, ty),
             Wanted::Boxed(ty) => match unboxed(ty) {
                 Some(number) if is_primitive(&arg.ty) => {

@@ -315,7 +315,14 @@ impl Checker<'_> {
             return;
         };
         match (cursor.previous, cursor.edge.take()) {
-            (Some(from), edge) => self.pattern_edge(builder, (from, index), edge, at),
+            (Some(from), edge) => {
+                self.pattern_edge(builder, (from, index), edge, at);
+                if node.is_nearest
+                    && let Some(edge) = builder.edges.last_mut()
+                {
+                    edge.is_minimal = true;
+                }
+            }
             (None, Some(edge)) if !builder.is_wrong => self.report_loose_edge(builder, edge.span),
             (None, _) => {}
         }

@@ -18,6 +18,15 @@ impl Checker<'_> {
             .collect()
     }
 
+    /// A whole right-hand side or instantiation body. `break` outside of the loops in it ends it: for a rule, what was made
+    /// until then is applied, and the next match follows.
+    pub(super) fn whole_production(&mut self, items: &[RhsItem]) -> Vec<Production> {
+        let outer = std::mem::replace(&mut self.cx.loops, 1);
+        let body = self.productions(items);
+        self.cx.loops = outer;
+        body
+    }
+
     /// Items with a block of their own for labels.
     fn inner_productions(&mut self, items: &[RhsItem]) -> Vec<Production> {
         self.cx.open();
@@ -51,17 +60,7 @@ impl Checker<'_> {
                 Production::If(cond?, yes, no)
             }
             RhsItem::Code(block) => Production::Code(self.stmts(&block.stmts)),
-            RhsItem::Break(span) => {
-                if self.cx.loops == 0 {
-                    self.report(Diagnostic::error(
-                        "loose-break",
-                        *span,
-                        "`break` stands in no loop",
-                    ));
-                    return None;
-                }
-                Production::Break
-            }
+            RhsItem::Break(_) => Production::Break,
             RhsItem::Cut(_) => Production::Cut,
         })
     }

@@ -31,7 +31,7 @@ impl Checker<'_> {
             ast::Arrow::Spo => Arrow::Spo,
             ast::Arrow::Execution => Arrow::Execution,
         };
-        let rhs = self.productions(&rule.rhs);
+        let rhs = self.whole_production(&rule.rhs);
         let exec = rule.exec.as_deref().and_then(|stmt| self.stmt(stmt));
         self.cx.close();
         let rule = Rule {

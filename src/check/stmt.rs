@@ -133,13 +133,8 @@ impl Checker<'_> {
                 | ast::ExprKind::Broken
         );
         // A query or a range in it makes it a loop: `(* Leaf *).grow();` is done for every leaf.
-        let wanted = if super::aggregate::repeats(e) {
-            Collector::Open
-        } else {
-            Collector::Closed
-        };
         self.cx.open();
-        let outer = std::mem::replace(&mut self.cx.collector, wanted);
+        let outer = std::mem::replace(&mut self.cx.collector, Collector::Open);
         let checked = self.expr(e);
         let found = std::mem::replace(&mut self.cx.collector, outer);
         self.cx.close();
@@ -154,6 +149,13 @@ impl Checker<'_> {
         let Collector::Found(sequence, slot) = found else {
             return Some(StmtKind::Expr(checked));
         };
+        if super::aggregate::keeps_last(e) {
+            let message = "of several values only the last one is kept";
+            let warning = Diagnostic::warning("last-value", e.span, message);
+            self.report(
+                warning.hint("write `first( … )`, `sum( … )` or the like around the query"),
+            );
+        }
         let body = Stmt {
             kind: StmtKind::Expr(checked),
             span: e.span,

@@ -81,6 +81,8 @@ pub struct PatternEdge {
     /// Closure: least and greatest number of edges; (1, Some(1)) for a plain edge. Of a walk only whether its least
     /// number is 0.
     pub repeat: (u32, Option<u32>),
+    /// Whether it is walked no further than to nodes from which the rest of the pattern was found: `(-->)+ :(A)`.
+    pub is_minimal: bool,
     /// The part searched apart that it belongs to, by index.
     pub choice: Option<usize>,
 }

@@ -1,7 +1,7 @@
 //! In which order the nodes of a pattern are looked for.
 
 use super::automaton::Automaton;
-use crate::graph::pattern::{Candidate, EdgeKind, Pattern};
+use crate::graph::pattern::{Candidate, EdgeKind, Pattern, PatternEdge};
 use crate::graph::{Graph, Payload, TypeId};
 
 /// A pattern made ready for searching; made once per rule or query.
@@ -217,7 +217,7 @@ impl<E> Planner<'_, E> {
         for _ in 0..n {
             let edges = self.pattern.edges.iter();
             for edge in edges.filter(|edge| edge.choice == self.choice) {
-                if let EdgeKind::Relation(_) = edge.kind {
+                if is_one_way(edge) {
                     is_led[self.meant[edge.to]] = true;
                 }
                 let least = part[edge.from].min(part[edge.to]);
@@ -265,7 +265,7 @@ impl<E> Planner<'_, E> {
         }
         open().find_map(|e| {
             let PatternEnds { from, to } = self.ends(e);
-            let is_one_way = matches!(self.pattern.edges[e].kind, EdgeKind::Relation(_));
+            let is_one_way = is_one_way(&self.pattern.edges[e]);
             match (self.is_bound[from], self.is_bound[to]) {
                 (true, false) if self.is_own(to) => Some((e, false)),
                 (false, true) if self.is_own(from) && !is_one_way => Some((e, true)),
@@ -304,6 +304,12 @@ impl<E> Planner<'_, E> {
             }
         }
     }
+}
+
+/// Whether an edge can only be walked as it is written: the way back from a method is not known, and which nodes are the
+/// nearest is seen from where the search begins.
+fn is_one_way(edge: &PatternEdge) -> bool {
+    edge.is_minimal || matches!(edge.kind, EdgeKind::Relation(_))
 }
 
 struct PatternEnds {

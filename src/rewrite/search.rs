@@ -63,6 +63,7 @@ pub fn search<E, M: MatchEnv<E>>(
         found,
         scratch,
         n_visits: 0,
+        n_found: 0,
     };
     let result = search.step(0).and_then(|_| search.visits(0, 1));
     let scratch = search.scratch;
@@ -93,6 +94,8 @@ struct Search<'a, E, M: MatchEnv<E>> {
     scratch: Scratch,
     /// Candidates tried and nodes visited that are not spent yet.
     n_visits: u32,
+    /// Matches found so far.
+    n_found: u64,
 }
 
 impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
@@ -152,6 +155,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
     }
 
     fn found(&mut self) -> Result<Turn, M::Error> {
+        self.n_found += 1;
         let found = Match {
             nodes: &self.scratch.nodes,
             is_bound: &self.scratch.is_bound,
@@ -305,6 +309,7 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
         let (path, from, to) = self.path(edge, is_reversed);
         let from = self.scratch.nodes[from];
         let base = self.scratch.open.len();
+        let is_minimal = self.pattern.edges[edge].is_minimal;
         let mut visited = Visited::new(self.env.graph(), &path);
         path.begin(self.env.graph(), from, &mut self.scratch.open);
         while self.scratch.open.len() > base {
@@ -315,9 +320,14 @@ impl<'a, E, M: MatchEnv<E>> Search<'a, E, M> {
             if !visited.is_new(&path, open) {
                 continue;
             }
-            let Visit { is_found, goes_on } = path.visit(self.env.graph(), open);
+            let Visit {
+                is_found,
+                mut goes_on,
+            } = path.visit(self.env.graph(), open);
             if is_found && visited.is_first_find(open.0) {
+                let n_before = self.n_found;
                 let turn = self.try_node(to, open.0, at)?;
+                goes_on &= !(is_minimal && self.n_found > n_before);
                 if turn != Turn::Next {
                     self.scratch.open.truncate(base);
                     return Ok(turn);

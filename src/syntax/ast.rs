@@ -545,6 +545,8 @@ pub struct NodePattern {
     pub name: TypeRef,
     /// `(a, , 3)`: `None` without parentheses; an entry is `None` for a gap.
     pub args: Option<Vec<Option<Expr>>>,
+    /// Whether it is written `:( … )`: the closure before it goes no further where a match was found.
+    pub is_nearest: bool,
     /// Its place.
     pub span: Span,
 }

@@ -397,6 +397,7 @@ fn pattern_parts(parts: &[PatternPart]) -> String {
 
 fn pattern_items(items: &[PatternItem]) -> String {
     join(items, " ", |item| match item {
+        PatternItem::Node(node) if node.is_nearest => format!(":({})", pattern_node(node)),
         PatternItem::Node(node) => pattern_node(node),
         PatternItem::Edge(found) => edge(found),
         PatternItem::Branch(items) => format!("[{}]", pattern_items(items)),

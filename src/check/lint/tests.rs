@@ -183,3 +183,16 @@ fn whole_quotients_that_become_fractions_are_told() {
         ("float v(int r) { return r / 3; }", &[]),
     ]);
 }
+
+#[test]
+fn keeping_the_last_of_several_values_is_told() {
+    let cases: &[(&str, &[&str])] = &[
+        ("{ k = (* A *)[n]; }", &["4:last-value"]),
+        ("{ k += (* A *)[n]; }", &[]),
+        ("{ (* A *)[n] = k; }", &[]),
+        ("{ k = sum((* A *)[n]); }", &[]),
+    ];
+    for (rules, expected) in cases {
+        assert_eq!(warnings(&with_rules(rules)), *expected, "{rules}");
+    }
+}

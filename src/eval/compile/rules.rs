@@ -188,6 +188,10 @@ impl Scope<'_> {
                         .map_err(|trap| env.note_match(trap, nodes, span))?;
                     Ok(match flow {
                         Flow::Next | Flow::Continue(Label::Innermost) => mode.after_match(),
+                        // On a right-hand side it ends that of this match; in `::>` it leaves the loop over the matches.
+                        Flow::Break(Label::Innermost) if arrow != Arrow::Execution => {
+                            mode.after_match()
+                        }
                         Flow::Break(Label::Innermost) => rewrite::Flow::Stop,
                         flow => {
                             left_by = flow;

@@ -369,6 +369,7 @@ fn edge_of(text: &str) -> PatternEdge {
         kind,
         way,
         repeat: once,
+        is_minimal: false,
         choice: None,
     };
     let closure = |repeat| PatternEdge {

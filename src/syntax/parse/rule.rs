@@ -91,6 +91,14 @@ impl Reader<'_> {
             }
             Rule::closure => PatternItem::Edge(self.closure(pair)),
             Rule::edge => PatternItem::Edge(self.edge(pair)),
+            Rule::nearest => {
+                let node = kids(pair).next().map(|kid| self.pattern_node(kid));
+                let is_nearest = true;
+                PatternItem::Node(NodePattern {
+                    is_nearest,
+                    ..node.expect("invariant: the rule holds a node")
+                })
+            }
             _ => PatternItem::Node(self.pattern_node(pair)),
         }
     }
@@ -134,6 +142,7 @@ impl Reader<'_> {
                 span,
             },
             args: None,
+            is_nearest: false,
             span,
         };
         for kid in kids(pair) {
