@@ -220,6 +220,62 @@ impl Editor {
             .collect()
     }
 
+    /// The ways of calling what is being called at the `|`, the active one marked `*`, and the active parameter.
+    fn signatures(&mut self, marked: &str) -> (Vec<String>, u64) {
+        let at = self.change_to("m.rgg", marked);
+        let found = self.ask("textDocument/signatureHelp", at);
+        let Some(forms) = found["signatures"].as_array() else {
+            return (vec![], 0);
+        };
+        let label = |(number, form): (usize, &Value)| {
+            let mark = if found["activeSignature"] == number {
+                "*"
+            } else {
+                ""
+            };
+            format!("{mark}{}", form["label"].as_str().unwrap())
+        };
+        let labels = forms.iter().enumerate().map(label).collect();
+        (labels, found["activeParameter"].as_u64().unwrap())
+    }
+
+    /// The texts of all files after a renaming of what is at the `|` of the first one; the reason if it is refused.
+    fn rename(
+        &mut self,
+        marked: &str,
+        others: &[(&str, &str)],
+        new: &str,
+    ) -> Result<String, String> {
+        let at = self.change_to("m.rgg", marked);
+        let mut params = at.clone();
+        params["newName"] = new.into();
+        let answer = self.request("textDocument/rename", params);
+        if let Some(why) = answer["error"]["message"].as_str() {
+            return Err(why.to_owned());
+        }
+        let mut shown = String::new();
+        let own = marked.replacen('|', "", 1);
+        for (name, text) in std::iter::once(("m.rgg", own.as_str())).chain(others.iter().copied()) {
+            let edits = &answer["result"]["changes"][self.uri(name)];
+            let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+            let edits: Vec<&Value> = edits.as_array().into_iter().flatten().collect();
+            for edit in edits.iter().rev() {
+                let (start, end) = (&edit["range"]["start"], &edit["range"]["end"]);
+                assert_eq!(start["line"], end["line"]);
+                // The texts of these tests are ASCII: units are bytes.
+                let column = |place: &Value| place["character"].as_u64().unwrap() as usize;
+                let line = &mut lines[start["line"].as_u64().unwrap() as usize];
+                line.replace_range(
+                    column(start)..column(end),
+                    edit["newText"].as_str().unwrap(),
+                );
+            }
+            shown.push_str(&lines.join("\n"));
+            shown.push('\n');
+        }
+        Ok(shown)
+    }
+
     /// Says goodbye; the server's exit code.
     fn leave(mut self) -> i32 {
         self.ask("shutdown", Value::Null);
@@ -244,7 +300,7 @@ fn in_run(rest: &str) -> String {
 #[test]
 fn an_editor_says_hello_and_goodbye() {
     let mut editor = Editor::with(&[("m.rgg", MODEL)]);
-    let refused = editor.request("textDocument/rename", json!({}));
+    let refused = editor.request("textDocument/formatting", json!({}));
     assert_eq!(refused["error"]["code"], -32601);
     assert_eq!(editor.leave(), 0);
     // Before `initialize` nothing is answered, and whoever leaves without `shutdown` is told.
@@ -568,4 +624,138 @@ fn all_example_models_are_without_faults_and_complete_everywhere() {
         editor.completion(&format!("{}|", &text[..cut]));
     }
     assert_eq!(editor.leave(), 0);
+}
+
+#[test]
+fn a_call_being_typed_shows_its_parameters() {
+    let mut editor = Editor::with(&[("m.rgg", MODEL)]);
+    let cases: &[(&str, &[&str], u64)] = &[
+        (
+            "Bud ==> Leaf(|);",
+            &["*module Leaf(float size) extends Null"],
+            0,
+        ),
+        (
+            "Bud ==> Cylinder(1, |);",
+            &["Cylinder()", "*Cylinder(float length, float radius)"],
+            1,
+        ),
+        ("Bud ==> RU(|", &["RU()", "*RU(float angle)"], 0),
+        (
+            "Bud ==> F(random(0, |1));",
+            &["*float random(float a, float b)"],
+            1,
+        ),
+        (
+            "Bud ==> F(Math.pow(max(1, 2), |",
+            &["*double Math.pow(double base, double exponent)"],
+            1,
+        ),
+        (
+            "x:Leaf ::> println(x.older(|));",
+            &["*int Leaf.older(int days)"],
+            0,
+        ),
+        ("Bud ==> F(sum(|", &["*sum((* Leaf *)[area])"], 0),
+        // No call, a comment, code in braces.
+        ("Bud ==> F((1 + |2));", &["F()", "*F(float length)"], 0),
+        ("Bud ==> Leaf(1); // F(|", &[], 0),
+        ("Bud ==> | Leaf(1);", &[], 0),
+    ];
+    for (rest, expected, number) in cases {
+        let (forms, active) = editor.signatures(&in_run(rest));
+        let expected: Vec<String> = expected.iter().map(|form| (*form).to_owned()).collect();
+        let is_shown = expected.iter().all(|form| forms.contains(form));
+        assert!(is_shown, "{rest}: {forms:?}");
+        assert_eq!(forms.is_empty(), expected.is_empty(), "{rest}: {forms:?}");
+        assert_eq!(active, *number, "{rest}");
+    }
+}
+
+#[test]
+fn names_are_changed_wherever_they_mean_the_same() {
+    let parts = "module Bud(float len);\nstatic float rate = 2;\nstatic float longer(float x) { return x + rate; }\n";
+    let mut editor = Editor::with(&[("m.rgg", ""), ("parts.rgg", parts)]);
+    let model = |marked: &str| {
+        let text = "import static parts.*;\nmodule Leaf(float len);\n\
+                    protected void init() [ Axiom ==> Bud(1) Leaf(1); ] // Bud\n\
+                    public void run() [\n  b:Bud(x) ==> F(longer(x) * rate) b { float y = x; b[len] += y; println(\"Bud\"); };\n  \
+                    Leaf(x), (x > 3) ==> Leaf(x + 1);\n]\n";
+        text.replacen(&marked.replace('|', ""), marked, 1)
+    };
+    let others = &[("parts.rgg", parts)];
+    // A module: in both files, not in the remark and the text.
+    let renamed = editor
+        .rename(&model("b:B|ud(x)"), others, "Sprout")
+        .unwrap();
+    let expected = format!("{}{parts}", model("|").replacen('|', "", 1))
+        .replace("Bud", "Sprout")
+        .replace("// Sprout", "// Bud")
+        .replace("\"Sprout\"", "\"Bud\"");
+    assert_eq!(renamed, expected);
+    // A field: not that of the other module. A parameter of a pattern: not that of the other rule.
+    let renamed = editor.rename(&model("b[le|n]"), others, "size").unwrap();
+    assert!(renamed.contains("b[size]") && renamed.contains("module Bud(float size)"));
+    assert!(renamed.contains("module Leaf(float len)"), "{renamed}");
+    let renamed = editor.rename(&model("longer(|x)"), others, "z").unwrap();
+    assert!(
+        renamed.contains("b:Bud(z) ==> F(longer(z) * rate) b { float y = z;"),
+        "{renamed}"
+    );
+    assert!(
+        renamed.contains("Leaf(x), (x > 3) ==> Leaf(x + 1)"),
+        "{renamed}"
+    );
+    // A method and a variable of the other file; a label; a local.
+    for (marked, new, wanted) in [
+        ("F(long|er(x)", "grown", "static float grown(float x)"),
+        (
+            "* ra|te)",
+            "factor",
+            "static float factor = 2;\nstatic float longer(float x) { return x + factor; }",
+        ),
+        (
+            "|b:Bud(x)",
+            "bud",
+            "bud:Bud(x) ==> F(longer(x) * rate) bud { float y = x; bud[len] += y;",
+        ),
+        ("float |y = x", "step", "float step = x; b[len] += step;"),
+    ] {
+        let renamed = editor.rename(&model(marked), others, new).unwrap();
+        assert!(renamed.contains(wanted), "{marked}: {renamed}");
+    }
+}
+
+#[test]
+fn a_renaming_that_would_change_the_model_is_refused() {
+    let mut editor = Editor::with(&[("m.rgg", MODEL)]);
+    let fine = in_run("x:Leaf(s), (s > k) ==> F(k) x;");
+    let at = |marked: &str| fine.replacen(&marked.replace('|', ""), marked, 1);
+    for (marked, new, why) in [
+        ("F(|k)", "F", "has a meaning in the language"),
+        ("F(|k)", "for", "has a meaning in the language"),
+        ("F(|k)", "s", "stands in m.rgg already, at line 7"),
+        ("F(|k)", "2k", "is no name"),
+        ("F(|k)", "", "is no name"),
+        ("=> |F(k)", "Sprout", "no name that the model declares"),
+    ] {
+        let told = editor.rename(&at(marked), &[], new).unwrap_err();
+        assert!(told.contains(why), "{marked} to `{new}`: {told}");
+    }
+    let broken = in_run("Bud ==> F(|k;");
+    let told = editor.rename(&broken, &[], "z").unwrap_err();
+    assert!(told.contains("mend the errors"), "{told}");
+    let place = editor.change_to("m.rgg", &at("F(|k)"));
+    let range = editor.ask("textDocument/prepareRename", place.clone());
+    assert_eq!(
+        range["end"]["character"],
+        range["start"]["character"].as_u64().unwrap() + 1
+    );
+    let mut params = place;
+    params["context"] = json!({ "includeDeclaration": false });
+    let uses = editor.ask("textDocument/references", params.clone());
+    assert_eq!(uses.as_array().unwrap().len(), 2, "{uses}");
+    params["context"]["includeDeclaration"] = true.into();
+    let uses = editor.ask("textDocument/references", params);
+    assert_eq!(uses.as_array().unwrap().len(), 3, "{uses}");
 }

@@ -47,14 +47,7 @@ impl Cursor {
         let mut at = 0;
         while at < end {
             let rest = &text[at..];
-            let (len, is_closed) = if rest.starts_with("//") {
-                (rest.find('\n').unwrap_or(rest.len()), false)
-            } else if let Some(inside) = rest.strip_prefix("/*") {
-                let closed = inside.find("*/").map(|len| (len + 4, true));
-                closed.unwrap_or((rest.len(), false))
-            } else if rest.starts_with(['"', '\'']) {
-                quoted_len(rest)
-            } else {
+            let Some((len, is_closed)) = no_code(rest) else {
                 at += self.step(rest, at);
                 continue;
             };
@@ -126,6 +119,57 @@ impl Cursor {
     }
 }
 
+/// The length of the comment or string that a text begins with, and whether it is closed; `None` if it begins with code.
+fn no_code(rest: &str) -> Option<(usize, bool)> {
+    if rest.starts_with("//") {
+        return Some((rest.find('\n').unwrap_or(rest.len()), false));
+    }
+    if let Some(inside) = rest.strip_prefix("/*") {
+        let closed = inside.find("*/").map(|len| (len + 4, true));
+        return Some(closed.unwrap_or((rest.len(), false)));
+    }
+    rest.starts_with(['"', '\'']).then(|| quoted_len(rest))
+}
+
+/// The words of the code of a text: names, keywords and numbers; none of comments and strings.
+pub fn words(text: &str) -> impl Iterator<Item = Range<usize>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        while let Some(first) = text[at..].chars().next() {
+            let rest = &text[at..];
+            if let Some((len, _)) = no_code(rest) {
+                at += len.max(1);
+            } else if is_word(first) {
+                let start = at;
+                at += rest.find(|c| !is_word(c)).unwrap_or(rest.len());
+                return Some(start..at);
+            } else {
+                at += first.len_utf8();
+            }
+        }
+        None
+    })
+}
+
+/// The number of commas in a text outside of brackets, comments and strings.
+pub fn commas(text: &str) -> usize {
+    let (mut at, mut depth, mut n) = (0, 0_usize, 0);
+    while let Some(first) = text[at..].chars().next() {
+        if let Some((len, _)) = no_code(&text[at..]) {
+            at += len.max(1);
+            continue;
+        }
+        match first {
+            '(' | '[' | '{' => depth += 1,
+            ')' | ']' | '}' => depth = depth.saturating_sub(1),
+            ',' if depth == 0 => n += 1,
+            _ => {}
+        }
+        at += first.len_utf8();
+    }
+    n
+}
+
 /// The length of a string or character with its quotes, at most to the end of its line, and whether it is closed.
 fn quoted_len(rest: &str) -> (usize, bool) {
     let quote = rest.chars().next().unwrap_or('"');
@@ -178,6 +222,15 @@ mod tests {
         ] {
             assert_eq!(at(marked).1.is_code, is_code, "{marked}");
         }
+    }
+
+    #[test]
+    fn words_and_commas_are_those_of_the_code() {
+        let text = "a(b1, \"c, d\", /* e, f */ {g, ä}, 'h') // i";
+        let found: Vec<&str> = words(text).map(|word| &text[word]).collect();
+        assert_eq!(found, ["a", "b1", "g", "ä"]);
+        assert_eq!(commas(&text[2..text.len() - 6]), 3);
+        assert_eq!(commas("\"open, "), 0);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! out what cannot be read. What a name means comes from the check itself ([`crate::check::survey`]), what the words
 //! of the language mean from the [`manual`](crate::manual). Nothing runs the model.
 
+pub mod calling;
 pub mod completion;
 pub mod cursor;
 pub mod faults;
@@ -12,6 +13,7 @@ pub mod meaning;
 pub mod outline;
 pub mod place;
 pub mod reading;
+pub mod renaming;
 pub mod server;
 pub mod symbols;
 pub mod wire;

@@ -1,14 +1,16 @@
 //! The conversation with an editor.
 
-use super::workspace::{Workspace, path_of};
-use super::{completion, faults, meaning, outline, wire};
+use super::workspace::{Analysis, FileView, Workspace, path_of};
+use super::{calling, completion, faults, meaning, outline, renaming, wire};
 use crate::pipeline::world::World;
 use lsp_types::{
     CompletionOptions, CompletionParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
     DidOpenTextDocumentParams, DocumentSymbolParams, DocumentSymbolResponse, GotoDefinitionParams,
     Hover, HoverContents, HoverParams, HoverProviderCapability, InitializeResult, Location,
-    MarkupContent, MarkupKind, OneOf, ServerCapabilities, ServerInfo, TextDocumentPositionParams,
-    TextDocumentSyncCapability, TextDocumentSyncKind, TextDocumentSyncOptions, Uri,
+    MarkupContent, MarkupKind, OneOf, ReferenceParams, RenameOptions, RenameParams,
+    ServerCapabilities, ServerInfo, SignatureHelpOptions, SignatureHelpParams,
+    TextDocumentPositionParams, TextDocumentSyncCapability, TextDocumentSyncKind,
+    TextDocumentSyncOptions, Uri, WorkDoneProgressOptions,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -44,6 +46,7 @@ const INVALID_PARAMS: i32 = -32602;
 const INTERNAL_ERROR: i32 = -32603;
 const NOT_INITIALIZED: i32 = -32002;
 const CANCELLED: i32 = -32800;
+const REQUEST_FAILED: i32 = -32803;
 
 fn refusal(code: i32, message: impl Into<String>) -> Refusal {
     Refusal {
@@ -213,6 +216,35 @@ impl<'w> Server<'w> {
                 let params: CompletionParams = read(params)?;
                 answer(&self.completion(&params.text_document_position))
             }
+            "textDocument/signatureHelp" => {
+                let params: SignatureHelpParams = read(params)?;
+                let at = params.text_document_position_params;
+                answer(&self.located(&at, calling::help))
+            }
+            "textDocument/references" => {
+                let params: ReferenceParams = read(params)?;
+                let is_wanted = params.context.include_declaration;
+                answer(&self.references(&params.text_document_position, is_wanted))
+            }
+            "textDocument/prepareRename" => {
+                let at: TextDocumentPositionParams = read(params)?;
+                answer(&self.located(&at, |analysis, file, byte| {
+                    let (word, _) = renaming::occurrences(analysis, file, byte)?;
+                    Some(file.lines.range(&file.text, word))
+                }))
+            }
+            "textDocument/rename" => {
+                let params: RenameParams = read(params)?;
+                let at = params.text_document_position;
+                let renamed = self.located(&at, |analysis, file, byte| {
+                    Some(renaming::rename(analysis, file, byte, &params.new_name))
+                });
+                match renamed {
+                    Some(Ok(edit)) => answer(&edit),
+                    Some(Err(why)) => Err(refusal(REQUEST_FAILED, why)),
+                    None => Ok(Value::Null),
+                }
+            }
             "textDocument/documentSymbol" => {
                 let params: DocumentSymbolParams = read(params)?;
                 answer(&self.outline(&params.text_document.uri))
@@ -327,14 +359,47 @@ impl<'w> Server<'w> {
         &mut self,
         at: &TextDocumentPositionParams,
     ) -> Option<Vec<lsp_types::CompletionItem>> {
+        self.located(at, |analysis, file, byte| {
+            Some(completion::complete(analysis, file, byte))
+        })
+    }
+
+    /// What is known of a place: of the model, the file, and the byte.
+    fn located<T>(
+        &mut self,
+        at: &TextDocumentPositionParams,
+        find: impl FnOnce(&Analysis, &FileView, usize) -> Option<T>,
+    ) -> Option<T> {
         let path = path_of(at.text_document.uri.as_str());
         let analysis = self.workspace.analysis(&path)?;
         let file = analysis.file_at(&path)?;
-        Some(completion::complete(
-            &analysis,
-            file,
-            file.lines.byte(&file.text, at.position),
-        ))
+        find(&analysis, file, file.lines.byte(&file.text, at.position))
+    }
+
+    fn references(
+        &mut self,
+        at: &TextDocumentPositionParams,
+        with_declaration: bool,
+    ) -> Option<Vec<Location>> {
+        self.located(at, |analysis, file, byte| {
+            let (_, places) = renaming::occurrences(analysis, file, byte)?;
+            let is_declared = |span: &crate::diag::Span| {
+                let locals = &analysis.survey.locals;
+                analysis.symbols().any(|symbol| symbol.name_span == *span)
+                    || locals.iter().any(|local| local.declared == *span)
+            };
+            let places = places.into_iter();
+            let wanted = places.filter(|span| with_declaration || !is_declared(span));
+            let located = wanted.filter_map(|span| {
+                let file = analysis.file(span)?;
+                let bytes = span.start as usize..span.end as usize;
+                Some(Location {
+                    uri: Uri::from_str(&file.uri).ok()?,
+                    range: file.lines.range(&file.text, bytes),
+                })
+            });
+            Some(located.collect())
+        })
     }
 
     fn outline(&mut self, uri: &Uri) -> Option<DocumentSymbolResponse> {
@@ -391,6 +456,15 @@ fn introduction() -> InitializeResult {
             completion_provider: Some(completion),
             definition_provider: Some(OneOf::Left(true)),
             document_symbol_provider: Some(OneOf::Left(true)),
+            references_provider: Some(OneOf::Left(true)),
+            rename_provider: Some(OneOf::Right(RenameOptions {
+                prepare_provider: Some(true),
+                work_done_progress_options: WorkDoneProgressOptions::default(),
+            })),
+            signature_help_provider: Some(SignatureHelpOptions {
+                trigger_characters: Some(["(", ","].map(str::to_owned).to_vec()),
+                ..SignatureHelpOptions::default()
+            }),
             ..ServerCapabilities::default()
         },
         server_info: Some(ServerInfo {

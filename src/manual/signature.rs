@@ -89,6 +89,17 @@ pub fn constructors(row: &BuiltinType) -> Vec<String> {
     row.constructors.iter().map(form).collect()
 }
 
+/// The properties that each way of making a node fills, in order.
+pub fn constructor_fields(row: &'static BuiltinType) -> Vec<Vec<&'static BuiltinField>> {
+    let lineage = || std::iter::successors(Some(row), |row| builtin_named(row.parent));
+    let field = |name: &&str| {
+        let mut fields = lineage().flat_map(|row| row.fields);
+        fields.find(|field| field.name == *name)
+    };
+    let fields = |names: &&[&str]| names.iter().filter_map(field).collect();
+    row.constructors.iter().map(fields).collect()
+}
+
 /// The value that a property begins with: `0.5`, `true`, `null`.
 pub fn default_value(field: &BuiltinField) -> String {
     match field.ty {
