@@ -591,3 +591,104 @@ protected void init() {
     let message = bench.fail("derive m.rgg --steps 0", 1);
     assert!(message.contains("--allow-path"), "{message}");
 }
+
+/// A model that reads a table from a place of its author's machine, counts its lines, and writes beside it.
+const FROM_AFAR: &str = "import java.io.*;
+protected void init() {
+  BufferedReader r = new BufferedReader(new FileReader(\"C:\\\\Users\\\\me\\\\data\\\\in.csv\"));
+  int n = 0; while (r.readLine() != null) n++;
+  println(\"lines \" + n);
+  PrintWriter w = new PrintWriter(new FileWriter(\"C:/Users/me/data/out.csv\")); w.println(n); w.close();
+}";
+
+#[test]
+fn a_path_map_leads_foreign_paths_to_a_folder_of_the_user() {
+    let bench = Bench::new(FROM_AFAR);
+    fs::create_dir_all(bench.path("own")).unwrap();
+    bench.write("own/in.csv", "a\nb\nc\n");
+    let message = bench.fail("derive m.rgg --steps 0", 1);
+    assert!(message.contains("--path-map"), "{message}");
+    assert!(message.contains("m.rgg:3:"), "{message}");
+    let printed = bench.succeed("derive m.rgg --steps 0 --path-map C:/Users/me/data=own");
+    assert!(printed.contains("lines 3"), "{printed}");
+    assert_eq!(
+        fs::read_to_string(bench.path("own/out.csv"))
+            .unwrap()
+            .trim(),
+        "3"
+    );
+    assert!(!bench.files().iter().any(|name| name.contains("Users")));
+    let message = bench.fail("derive m.rgg --steps 0 --path-map nonsense", 2);
+    assert!(message.contains("nonsense"), "{message}");
+}
+
+#[test]
+fn nothing_outside_of_the_folder_is_touched_unless_it_is_allowed() {
+    let outside = tempfile::tempdir().unwrap();
+    let place = outside.path().display().to_string();
+    fs::write(outside.path().join("in.txt"), "seen\n").unwrap();
+    let bench = Bench::new(&format!(
+        "import java.io.*;
+protected void init() {{
+  println(new BufferedReader(new FileReader(\"{place}/in.txt\")).readLine());
+  PrintWriter w = new PrintWriter(new FileWriter(\"{place}/out.txt\")); w.println(\"written\"); w.close();
+}}"
+    ));
+    let message = bench.fail("derive m.rgg --steps 0", 1);
+    assert!(message.contains("--allow-path"), "{message}");
+    assert!(message.contains("outside of its folder"), "{message}");
+    assert!(!outside.path().join("out.txt").exists());
+    let printed = bench.succeed(&format!("derive m.rgg --steps 0 --allow-path {place}"));
+    assert!(printed.contains("seen"), "{printed}");
+    let written = fs::read_to_string(outside.path().join("out.txt")).unwrap();
+    assert_eq!(written.trim(), "written");
+    // A neighbour whose name only begins alike is not allowed with it.
+    fs::create_dir_all(outside.path().join("a")).unwrap();
+    fs::create_dir_all(outside.path().join("ab")).unwrap();
+    fs::write(outside.path().join("ab/in.txt"), "x").unwrap();
+    bench.write(
+        "m.rgg",
+        &format!("protected void init() {{ new java.io.FileReader(\"{place}/ab/in.txt\"); }}"),
+    );
+    bench.fail(&format!("derive m.rgg --steps 0 --allow-path {place}/a"), 1);
+    bench.fail(
+        &format!("derive m.rgg --steps 0 --allow-path {place}/a/../a"),
+        1,
+    );
+    bench.succeed(&format!("derive m.rgg --steps 0 --allow-path {place}/ab"));
+}
+
+#[test]
+fn charts_are_written_where_they_are_wanted() {
+    let bench = Bench::new(
+        "module A(float x);
+DatasetRef sizes = new DatasetRef(\"sizes\");
+protected void init() [ { sizes.clear(); sizes.setColumnKey(0, \"length\"); chart(sizes, XY_PLOT); } Axiom ==> A(1); ]
+public void run() [ A(x) ==> A(2 * x); { sizes.addRow().set(0, sum((* A *)[x])); } ]",
+    );
+    bench.succeed("derive m.rgg --steps 3");
+    assert_eq!(bench.files(), BTreeSet::from(["m.rgg".to_owned()]));
+    bench.succeed("derive m.rgg --steps 3 --charts plots");
+    let names: BTreeSet<String> = fs::read_dir(bench.path("plots"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    assert_eq!(
+        names,
+        BTreeSet::from(["sizes.csv".to_owned(), "sizes.svg".to_owned()])
+    );
+    let table = fs::read_to_string(bench.path("plots/sizes.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert!(lines[0].contains("length"), "{table}");
+    assert_eq!(lines.len(), 4, "{table}");
+    assert!(
+        lines[3].contains('4'),
+        "the sum before the third step is applied: {table}"
+    );
+    let drawing = fs::read_to_string(bench.path("plots/sizes.svg")).unwrap();
+    assert!(
+        drawing.starts_with("<svg") || drawing.starts_with("<?xml"),
+        "{drawing}"
+    );
+    assert!(drawing.contains("length"), "{drawing}");
+}

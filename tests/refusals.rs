@@ -9,7 +9,12 @@ use understory::syntax;
 
 /// The entry of the list, the model, what the message names, and what the advice does.
 const CASES: &[(&str, &str, &str, &str)] = &[
-    ("scales", "scaleclass Plant;", "scaleclass", "one module"),
+    (
+        "scales",
+        "scaleclass Plant;\nmodule A;",
+        "scaleclass",
+        "one module",
+    ),
     ("scales", "module A extends SRoot;", "SRoot", "one module"),
     (
         "scales",

@@ -369,6 +369,10 @@ impl<'a> Checker<'a> {
     }
 
     fn declare_method(&mut self, method: &'a ast::Method, owner: Option<TypeId>) {
+        if method.name.name.starts_with("operator$") {
+            self.refuse_operator(method);
+            return;
+        }
         let is_constructor = self.is_constructor(method, owner);
         let result = match &method.result {
             Some(result) => self.resolve_type(result),

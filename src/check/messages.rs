@@ -206,6 +206,11 @@ impl Checker<'_> {
             return None;
         }
         if self.is_known_qualifier(owner) {
+            if let Some(hint) = super::refuse::function_hint(&member.name) {
+                let message = format!("`{owner}.{}` is not supported", member.name);
+                let fault = Diagnostic::error("unsupported-function", member.span, message);
+                return Some(fault.hint(hint));
+            }
             let message = format!("`{owner}` has no function `{}`", member.name);
             let fault = Diagnostic::error("unknown-function", member.span, message);
             let rows = FunctionId::ALL.iter().map(|f| f.signature());

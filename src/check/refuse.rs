@@ -155,6 +155,10 @@ const TYPES: &[(&[&str], &str)] = &[
         "differential equations (`:'=`) are not supported: write one step of the integration yourself",
     ),
     (
+        &["VVProducer", "VVGraph", "HalfEdge"],
+        "meshes that are edited by their vertices are not supported: use `Parallelogram`, or a `Mesh(\"file.obj\")`",
+    ),
+    (
         &["SRoot", "TypeRoot", "TypeAxiom"],
         "models of several scales are not supported: write one module for each scale",
     ),
@@ -184,7 +188,7 @@ const FUNCTIONS: &[(&[&str], &str)] = &[
     ),
     (
         &["import3d", "import3D"],
-        "geometry of files cannot be imported",
+        "write a `Mesh(\"file.obj\")` node: `.obj`, `.glb` and `.gltf` files are read",
     ),
     (
         &["integrate", "solver", "setIntegrator"],
@@ -197,6 +201,19 @@ const FUNCTIONS: &[(&[&str], &str)] = &[
     (
         &["transformation"],
         "use `location`, `direction` and `endlocation`",
+    ),
+    (
+        &[
+            "forName",
+            "newInstance",
+            "getDeclaredMethod",
+            "getDeclaredField",
+        ],
+        "reflection is not supported: name the class, method or field in the text",
+    ),
+    (
+        &["applyInterpretation"],
+        "interpretive rules are not supported: give the module a body, `module A ==> F(1);`",
     ),
     (&["getHours", "execute"], "models cannot reach the machine"),
 ];
@@ -237,6 +254,15 @@ impl Checker<'_> {
         );
         self.report(fault.hint("declare it beside the other"));
         self.refused.insert(module.name.name.clone());
+    }
+
+    /// `operator$add`: an operator that would get a new meaning.
+    pub(super) fn refuse_operator(&mut self, method: &ast::Method) {
+        let name = &method.name.name;
+        let message =
+            format!("operators with a meaning of the model's own (`{name}`) are not supported");
+        let fault = Diagnostic::error("unsupported-operator", method.name.span, message);
+        self.report(fault.hint("write a method with a name and call it"));
     }
 
     /// A method without a result type that is no constructor.

@@ -222,7 +222,9 @@ impl Reader<'_> {
         let mut ty = None;
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::type_ref if kid.as_str() == "scaleclass" => self.refuse_scales(span),
+                Rule::type_ref if kid.as_str().trim_end() == "scaleclass" => {
+                    self.refuse_scales(span)
+                }
                 Rule::type_ref => ty = Some(self.type_ref(kid)),
                 Rule::method_rest => {
                     let method = Method {
