@@ -25,6 +25,9 @@
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
 //! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
 //!
+//! # Cook1984
+//! R. Cook, T. Porter, L. Carpenter: Distributed Ray Tracing. SIGGRAPH, 1984. <https://doi.org/10.1145/800031.808590>
+//!
 //! # Dekker1971
 //! T. J. Dekker: A Floating-Point Technique for Extending the Available Precision. Numerische Mathematik 18, 1971.
 //! <https://doi.org/10.1007/BF01397083>
@@ -47,6 +50,10 @@
 //! # Haines2019
 //! E. Haines, J. Günther, T. Akenine-Möller: Precision Improvements for Ray/Sphere Intersection. Ray Tracing Gems, chapter 7,
 //! Apress, 2019. <https://doi.org/10.1007/978-1-4842-4427-2_7>
+//!
+//! # HallGreenberg1983
+//! R. Hall, D. Greenberg: A Testbed for Realistic Image Synthesis. IEEE Computer Graphics and Applications 3(8), 1983.
+//! <https://doi.org/10.1109/MCG.1983.263292>
 //!
 //! # Harris1978
 //! F. Harris: On the Use of Windows for Harmonic Analysis with the Discrete Fourier Transform. Proceedings of the IEEE
@@ -108,6 +115,10 @@
 //! # MoonSpencer1942
 //! P. Moon, D. Spencer: Illumination from a Non-Uniform Sky. Transactions of the Illuminating Engineering Society 37, 1942.
 //!
+//! # Mitchell1987
+//! D. Mitchell: Generating Antialiased Images at Low Sampling Densities. SIGGRAPH, 1987.
+//! <https://doi.org/10.1145/37401.37410>
+//!
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik
 //! und Mechanik 54(1), 1974. <https://doi.org/10.1002/zamm.19740540106>
@@ -167,6 +178,10 @@
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.
 //! <https://doi.org/10.1080/00401706.1962.10490022>
+//!
+//! # Whitted1980
+//! T. Whitted: An Improved Illumination Model for Shaded Display. Communications of the ACM 23(6), 1980.
+//! <https://doi.org/10.1145/358876.358882>
 //!
 //! # Woop2013
 //! S. Woop, C. Benthin, I. Wald: Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1), 2013.

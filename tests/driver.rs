@@ -11,7 +11,7 @@ use room::shaded_ground;
 use std::ops::ControlFlow;
 use understory::camera::{Camera, View};
 use understory::film::Filter;
-use understory::integrator::driver::{FilmResult, FilmSettings, render_view};
+use understory::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
 use understory::integrator::{CancelToken, Integrator, Path, RenderContext, RenderError};
 use understory::math::angle::Angle;
 use understory::sampler::SamplerKind;
@@ -42,6 +42,7 @@ fn picture(
         samples_per_pixel: samples,
         filter: Filter::Box,
         sampler: SamplerKind::OwenSobol,
+        refinement: Refinement::Everywhere,
     };
     let estimator = Path::default().prepare(&scene, &context).unwrap();
     let pool = rayon::ThreadPoolBuilder::new()

@@ -3,6 +3,7 @@
 //! A [`Film`] adds up samples per pixel in `f64`, in two halves that are scrambled independently: their difference measures
 //! the noise of the whole without a reference. [`tone`] turns a finished picture into bytes for a screen.
 
+pub mod contrast;
 mod error;
 pub mod filter;
 pub mod tone;

@@ -3,8 +3,9 @@
 //! Every sample is a pure function of (seed, pixel, sample number) and every pixel adds up its own samples in order, so the
 //! bytes depend neither on the number of threads nor on how the samples are cut into passes.
 
-use super::{CancelToken, Progress, RadianceEstimator, RayCounts, RenderContext, RenderError};
+use super::{Progress, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::camera::Camera;
+use crate::film::contrast::{self, PixelMask};
 use crate::film::filter::FilterSampler;
 use crate::film::{ErrorEstimate, Film, Filter, Tile};
 use crate::math::rng;
@@ -27,12 +28,25 @@ pub struct FilmSettings {
     pub filter: Filter,
     /// How samples are spread.
     pub sampler: SamplerKind,
+    /// Which pixels get them all.
+    pub refinement: Refinement,
+}
+
+/// Which pixels get all samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Refinement {
+    /// All pixels.
+    #[default]
+    Everywhere,
+    /// Two samples for each pixel, and all of them where those differ from each other or from their neighbours' by so much
+    /// that an edge or noise would show. Too few for what is thinner than a pixel; meant for methods without noise.
+    ByContrast,
 }
 
 /// What a render cost and how good it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderReport {
-    /// Samples per pixel in the picture.
+    /// Samples per pixel in the picture; with [`Refinement::ByContrast`], of the pixels that got all.
     pub samples_per_pixel: u32,
     /// Ray queries of all samples.
     pub rays: RayCounts,
@@ -53,6 +67,9 @@ pub struct FilmResult {
 
 /// Largest number of samples per pixel between two calls of `on_pass`.
 const LONGEST_PASS: u32 = 16;
+
+/// Samples of each pixel after which it is decided which ones need more: one of each half.
+const SAMPLES_TO_DECIDE: u32 = 2;
 
 /// Renders one view.
 ///
@@ -78,6 +95,7 @@ pub fn render_view(
         done: AtomicU64::new(0),
         total: n_pixels * u64::from(settings.samples_per_pixel),
     };
+    let mut wanted: Option<PixelMask> = None;
     let film = Film::new(settings.width, settings.height);
     let mut result = FilmResult {
         film,
@@ -90,7 +108,10 @@ pub fn render_view(
             + start
                 .clamp(1, LONGEST_PASS)
                 .min(settings.samples_per_pixel - start);
-        let rays = pass.run(result.film.tiles_mut(), start..end);
+        if start == SAMPLES_TO_DECIDE && settings.refinement == Refinement::ByContrast {
+            wanted = Some(contrast::pixels_to_refine(&result.film));
+        }
+        let rays = pass.run(result.film.tiles_mut(), start..end, wanted.as_ref());
         result.report.rays += rays;
         result.report.n_rejected = result.film.n_rejected();
         if context.cancel.is_cancelled() {
@@ -120,23 +141,32 @@ struct Pass<'a> {
 
 impl Pass<'_> {
     /// Adds the samples of this range to all tiles.
-    fn run(&self, tiles: &mut [Tile], samples: Range<u32>) -> RayCounts {
+    fn run(
+        &self,
+        tiles: &mut [Tile],
+        samples: Range<u32>,
+        wanted: Option<&PixelMask>,
+    ) -> RayCounts {
         tiles
             .par_iter_mut()
-            .map(|tile| self.fill(tile, &samples, self.context.cancel))
+            .map(|tile| self.fill(tile, &samples, wanted))
             .reduce(RayCounts::default, |mut a, b| {
                 a += b;
                 a
             })
     }
 
-    fn fill(&self, tile: &mut Tile, samples: &Range<u32>, cancel: &CancelToken) -> RayCounts {
+    /// Adds the samples of this range to the pixels of a tile, or to those that are wanted.
+    fn fill(&self, tile: &mut Tile, samples: &Range<u32>, wanted: Option<&PixelMask>) -> RayCounts {
         let mut rays = RayCounts::default();
         for (i, pixel) in (0..).zip(&mut tile.pixels) {
-            if cancel.is_cancelled() {
+            if self.context.cancel.is_cancelled() {
                 return rays;
             }
             let (x, y) = (tile.x + i % tile.width, tile.y + i / tile.width);
+            if wanted.is_some_and(|mask| !mask.has(x, y)) {
+                continue;
+            }
             for sample in samples.clone() {
                 let mut sampler = self.sampler(x, y, sample);
                 let ray = self.camera.ray(self.film_point(x, y, &sampler));

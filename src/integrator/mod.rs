@@ -7,15 +7,18 @@
 //! Every method is asked through the same ray queries of the [`scene`](crate::scene), the same sources ([`sources`]) and the
 //! same [`sampler`](crate::sampler), so that a fix is made once.
 
+mod clear_shadow;
 mod context;
 pub mod driver;
 pub mod medium;
 pub mod mis;
 pub mod path;
+pub mod raytracer;
 pub mod sources;
 
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
 pub use path::Path;
+pub use raytracer::Raytracer;
 
 use crate::color::Rgb;
 use crate::math::Ray;
@@ -48,6 +51,8 @@ pub trait RadianceEstimator: Sync {
 pub enum Method {
     /// Path tracing: unbiased, the reference for all others.
     Path(Path),
+    /// Standard ray tracing: direct light, mirrors and glass.
+    Raytracer(Raytracer),
 }
 
 impl Method {
@@ -56,6 +61,7 @@ impl Method {
     pub fn integrator(&self) -> &dyn Integrator {
         match self {
             Self::Path(path) => path,
+            Self::Raytracer(raytracer) => raytracer,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! All light sources of a scene as one: choosing among them, sampling them, and the density with which that is done.
 
 use super::RayCounts;
+use super::clear_shadow;
 use super::medium::left_after;
 use super::mis::power_heuristic;
 use super::path::Strategies;
@@ -43,6 +44,16 @@ pub enum Reach {
     Later,
 }
 
+/// How clear bodies, which bend light, stop it on its way from a lamp.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadows {
+    /// Wholly: light that they bend arrives elsewhere and is found otherwise, if at all.
+    #[default]
+    Opaque,
+    /// As if they did not bend it: less dark, and not exact.
+    Clear,
+}
+
 /// A surface point that waits for light, and the direction it is seen from.
 #[derive(Clone, Copy, Debug)]
 pub struct Shading<'a> {
@@ -71,10 +82,10 @@ impl Shading<'_> {
         scattering.pdf_solid_angle(self.frame, self.wo, wi, Transport::Radiance)
     }
 
-    /// Fraction of the light that the clear body between leaves.
-    fn left(&self, light: &LightSample) -> Rgb {
-        let is_near = self.frame.is_in_front(self.wo) == self.frame.is_in_front(light.wi);
-        left_after(self.absorption[usize::from(!is_near)], light.distance)
+    /// What is absorbed on the side of `wi`, 1/m.
+    fn absorption_toward(&self, wi: DVec3) -> Rgb {
+        let is_near = self.frame.is_in_front(self.wo) == self.frame.is_in_front(wi);
+        self.absorption[usize::from(!is_near)]
     }
 }
 
@@ -89,6 +100,7 @@ pub struct Sources<'s> {
     first_emitter: usize,
     first: Selection,
     later: Selection,
+    shadows: Shadows,
 }
 
 /// Which sources are sampled: some always, and one of the others by chance.
@@ -131,7 +143,14 @@ impl<'s> Sources<'s> {
             first_emitter,
             first,
             later,
+            shadows: Shadows::default(),
         }
+    }
+
+    /// The same sources with other shadows of clear bodies.
+    #[must_use]
+    pub fn with_shadows(self, shadows: Shadows) -> Self {
+        Self { shadows, ..self }
     }
 
     fn selection(&self, reach: Reach) -> &Selection {
@@ -161,11 +180,20 @@ impl<'s> Sources<'s> {
                 continue;
             };
             let weight = weight(shading, &light, probability, strategies);
-            let scattered = shading.value_cos(light.wi) * shading.left(&light);
+            let scattered = shading.value_cos(light.wi);
             let unshaded = scattered * light.facing_irradiance * (weight / probability);
             if !unshaded.is_black() {
+                let absorption = shading.absorption_toward(light.wi);
                 rays.shadow += 1;
-                radiance += unshaded * self.scene.transmittance(&ray);
+                radiance += unshaded
+                    * match self.shadows {
+                        Shadows::Opaque => {
+                            left_after(absorption, light.distance) * self.scene.transmittance(&ray)
+                        }
+                        Shadows::Clear => {
+                            clear_shadow::transmittance(self.scene, &ray, absorption, rays)
+                        }
+                    };
             }
         }
         radiance

@@ -3,7 +3,8 @@
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::SkyKind;
 use super::value::{
-    Brightness, Bytes, Daylight, Ground, Quality, Renderer, Seconds, Size, Threads, Turbidity,
+    Brightness, Bytes, Daylight, GridSize, Ground, Quality, Renderer, Seconds, Size, Threads,
+    Turbidity,
 };
 use crate::diag::nearest;
 use crate::light::sun_position::{Moment, Place};
@@ -211,7 +212,7 @@ options! {
     /// Vertical field of view in degrees
     fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
 
-    /// Method that computes the light: `path` (path tracing)
+    /// Method that computes the light: `path` (path tracing: all light) or `raytracer` (direct light, mirrors and glass: fast)
     renderer: Renderer = "path", "renderer", "NAME", Render, View, PICTURING;
     /// Preset: `draft`, `preview` or `final`
     quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
@@ -221,6 +222,12 @@ options! {
     samples: NonZeroU32 = "64", "samples", "N", Render, View, PICTURING;
     /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
     max_depth: Option<u32> = "none", "max-depth", "N", Render, View, PICTURING;
+    /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
+    supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
+    /// How often the ray tracer follows a ray through mirrors and glass
+    recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, PICTURING;
+    /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
+    light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
     time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture

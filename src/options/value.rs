@@ -24,6 +24,28 @@ pub trait OptionValue: Sized + Clone + Debug {
 pub enum Renderer {
     /// Path tracing: unbiased, all light paths, noise that falls with the number of samples.
     Path,
+    /// Standard ray tracing: direct light, and what mirrors and glass show of it.
+    Raytracer,
+}
+
+/// How many samples a pixel has along each side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridSize(pub NonZeroU32);
+
+impl GridSize {
+    /// Samples per pixel.
+    pub fn samples(self) -> NonZeroU32 {
+        self.0.saturating_mul(self.0)
+    }
+}
+
+impl OptionValue for GridSize {
+    fn parse(text: &str) -> Result<Self, String> {
+        let side = text.parse::<NonZeroU32>().ok();
+        side.filter(|side| side.get() <= 1000)
+            .map(Self)
+            .ok_or_else(|| "a whole number from 1 to 1000".into())
+    }
 }
 
 /// A named set of values between haste and care.
@@ -100,10 +122,11 @@ impl OptionValue for Renderer {
     fn parse(text: &str) -> Result<Self, String> {
         match text {
             "path" => Ok(Self::Path),
-            "raytracer" | "photon" | "radiosity" => {
-                Err("`path` (the others are not built yet in this version)".into())
+            "raytracer" => Ok(Self::Raytracer),
+            "photon" | "radiosity" => {
+                Err("`path` or `raytracer` (the others are not built yet in this version)".into())
             }
-            _ => Err("`path`".into()),
+            _ => Err("`path` or `raytracer`".into()),
         }
     }
 }

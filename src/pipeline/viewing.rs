@@ -7,12 +7,12 @@ use super::report::Effort;
 use super::world::World;
 use crate::camera::Camera;
 use crate::film::{Filter, LinearImage, tone};
-use crate::integrator::driver::{FilmResult, FilmSettings, render_view};
+use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
 use crate::integrator::{
-    CancelToken, Method, Path, Progress, RadianceEstimator, RenderContext, RenderError,
+    CancelToken, Method, Path, Progress, RadianceEstimator, Raytracer, RenderContext, RenderError,
 };
 use crate::options::Options;
-use crate::options::value::Renderer;
+use crate::options::value::{GridSize, Renderer};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use std::ops::ControlFlow;
@@ -95,6 +95,7 @@ impl Viewing<'_> {
             width: side(size.width),
             height: side(size.height),
             samples_per_pixel: EXPOSURE_SAMPLES,
+            refinement: Refinement::Everywhere,
             ..self.settings()
         };
         let silent = |_: Progress| {};
@@ -202,11 +203,19 @@ impl Viewing<'_> {
     }
 
     fn settings(&self) -> FilmSettings {
-        let size = self.options.size.value;
+        let options = self.options;
+        let size = options.size.value;
+        let grid = options.supersampling.value.map(GridSize::samples);
+        let is_free_of_noise = options.renderer.value == Renderer::Raytracer;
         FilmSettings {
             width: size.width,
             height: size.height,
-            samples_per_pixel: self.options.samples.value.get(),
+            samples_per_pixel: grid.unwrap_or(options.samples.value).get(),
+            refinement: if is_free_of_noise && grid.is_none() {
+                Refinement::ByContrast
+            } else {
+                Refinement::Everywhere
+            },
             filter: Filter::default(),
             sampler: SamplerKind::default(),
         }
@@ -231,6 +240,11 @@ fn method(options: &Options) -> Method {
         Renderer::Path => Method::Path(Path {
             max_depth: options.max_depth.value,
             ..Path::default()
+        }),
+        Renderer::Raytracer => Method::Raytracer(Raytracer {
+            max_depth: options.recursion_depth.value,
+            light_samples: options.light_samples.value.get(),
+            ..Raytracer::default()
         }),
     }
 }
