@@ -118,3 +118,15 @@ pub const FRAMING_SLACK: f64 = 1e-5;
 /// far reflections; ten times smaller is still computed well, but light sampling finds such reflections no more. Used by
 /// [`crate::material`].
 pub const SMOOTHEST_ALPHA: f64 = 1e-4;
+
+/// Below this solid angle, in steradian, a rectangular lamp is sampled by area.
+///
+/// Its solid angle is a difference of angles near 2π, known to about 1e-15: to 1e-12 of itself here. Distance and slant hardly
+/// vary over so small a lamp. Used by [`crate::scene`].
+pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
+
+/// How near to 1 the sine of half the angle that a ball subtends may come before it is sampled by area.
+///
+/// Nearer, the point is within 1e-9 radii of the ball, and rounding may bring the edge of the cone past the horizon. Used by
+/// [`crate::scene`].
+pub const BALL_HORIZON: f64 = 1e-9;

@@ -5,14 +5,10 @@
 
 use crate::math::frame::Frame;
 use crate::math::functions::{acos, asin, cos, sin};
-use crate::math::tolerance::SIMILARITY;
+use crate::math::tolerance::{BALL_HORIZON, LEAST_SOLID_ANGLE, SIMILARITY};
 use crate::math::warp;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
-
-/// Below this solid angle, in steradian, a rectangle is sampled by area: its own angles then cancel to few digits, and
-/// distance and slant hardly vary over it.
-const SMALLEST: f64 = 1e-3;
 
 /// A rectangle as it is seen from a point.
 ///
@@ -66,7 +62,7 @@ impl SeenRectangle {
         let angle = |i: usize| acos((-faces[i].dot(faces[(i + 1) % 4])).clamp(-1.0, 1.0));
         let k = TAU - angle(2) - angle(3);
         let solid_angle = angle(0) + angle(1) - k;
-        (solid_angle >= SMALLEST).then_some(Self {
+        (solid_angle >= LEAST_SOLID_ANGLE).then_some(Self {
             from,
             axes: [x, y, normal],
             low,
@@ -125,7 +121,7 @@ impl SeenBall {
         let distance = (center - from).length();
         let sine = radius / distance;
         // Nearer than that rounding could bring the cone's edge past the horizon.
-        (sine < 1.0 - 1e-9).then(|| Self {
+        (sine < 1.0 - BALL_HORIZON).then(|| Self {
             from,
             center,
             radius,
