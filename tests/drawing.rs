@@ -7,7 +7,7 @@ use understory::diag::SourceMap;
 use understory::geometry::Shape;
 use understory::growth::{Growth, GrowthOptions};
 use understory::interpret::{Interpretation, Limits, interpret};
-use understory::light::Light;
+use understory::light::{Light, Sky as Background};
 use understory::scene::Scene;
 use understory::scene::description::PlacedShape;
 use understory::syntax::parse;
@@ -294,4 +294,22 @@ fn hidden_layers_are_not_drawn_and_do_not_shine() {
     assert_eq!(counts(&[0]), (4, 1));
     let drawn = draw("[Sphere(2).(setLayer(5)) M(1) Sphere(3)]", "");
     assert_eq!(heights(&drawn), [0.0, 1.0]);
+}
+
+#[test]
+fn skies_shine_with_their_own_power_and_colour() {
+    let plain = draw("Sky()", "");
+    let Background::Uniform(radiance) = plain.scene.environment.sky else {
+        panic!("a sky")
+    };
+    assert!((radiance.sum() * PI - 50.0).abs() < 1e-12);
+    assert!(plain.summary.has_light);
+    let red = draw(
+        "[Sky.(setPowerDensity(3 * 2), setShader(RED), setLayer(1)) Sphere(1)]",
+        "",
+    );
+    let Background::Uniform(radiance) = red.scene.environment.sky else {
+        panic!("a sky")
+    };
+    assert!((radiance.r * PI - 6.0).abs() < 1e-12 && radiance.g == 0.0);
 }

@@ -310,6 +310,7 @@ impl Checker<'_> {
         match callee {
             Callee::Accessor(accessor) => self.apply_accessor(receiver?, accessor, args, span),
             Callee::Function(id) => {
+                self.warn_of_nothing(id, span);
                 self.note_effect(id.signature().effect);
                 let result = id.signature().result;
                 let ty = result.to_type(self.node, args.first().map(|arg| &arg.ty));

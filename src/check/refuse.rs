@@ -2,6 +2,7 @@
 
 use super::Checker;
 use crate::diag::{Diagnostic, Span};
+use crate::library::FunctionId;
 use crate::syntax::ast;
 
 /// Types of GroIMP and Java that models use and that are not supported, with what to do instead.
@@ -53,9 +54,37 @@ const TYPES: &[(&[&str], &str)] = &[
             "SensorAreaGrid",
             "SensorGrid",
             "AreaSensorNode",
-            "ColorGradient",
         ],
         "place `SensorNode`s in a loop",
+    ),
+    (
+        &["ColorGradient", "ColorMap"],
+        "compute the colour yourself: `new RGBAShader(red, green, blue)`",
+    ),
+    (
+        &[
+            "Camera",
+            "CameraBase",
+            "CameraNode",
+            "PerspectiveCamera",
+            "ParallelCamera",
+            "Projection",
+            "PerspectiveProjection",
+            "ParallelProjection",
+        ],
+        "the camera belongs to the picture: give `--eye`, `--target` and `--fov`, or `[camera]` in the file beside the model",
+    ),
+    (
+        &["Line", "Arrow"],
+        "draw a thin cylinder: `F(length, diameter)` or `Cylinder(length, radius)`",
+    ),
+    (
+        &["Cube", "Ellipsoid", "Disc", "Lamella", "Patch", "Leaf3d"],
+        "use `Box`, `Cylinder`, `Sphere` or `Parallelogram`, with `Scale` before it where it is stretched",
+    ),
+    (
+        &["Fog", "Interior", "SolidInterior", "IORShader"],
+        "media inside of bodies are not supported: leave it out",
     ),
     (
         &[
@@ -82,14 +111,12 @@ const TYPES: &[(&[&str], &str)] = &[
         "use `Parallelogram` and the other primitives",
     ),
     (
-        &[
-            "ImageMap",
-            "Checker",
-            "Laplace3D",
-            "Granite3D",
-            "SunSkyLight",
-        ],
+        &["ImageMap", "Checker", "Laplace3D", "Granite3D"],
         "use `RGBAShader` or `Phong`",
+    ),
+    (
+        &["SunSkyLight"],
+        "the sky belongs to the picture: give `--sun` and `--turbidity`, or `[sky]` in the file beside the model",
     ),
     (
         &["Thread", "Runnable", "Timer", "ExecutorService", "Callable"],
@@ -235,7 +262,34 @@ pub(super) fn function_hint(name: &str) -> Option<&'static str> {
     hint(FUNCTIONS, name)
 }
 
+/// Functions that are accepted and do nothing that a user would expect of them: what they would do, and what does it here.
+fn idle(id: FunctionId) -> Option<(&'static str, &'static str)> {
+    match id {
+        FunctionId::Snapshot | FunctionId::SnapshotSized => {
+            Some(("makes no picture", "make pictures with `understory render`"))
+        }
+        FunctionId::Export3d => Some(("writes nothing", "a model cannot export its geometry")),
+        FunctionId::SaveGraph => Some((
+            "writes nothing",
+            "`understory derive --json FILE` tells what a graph holds",
+        )),
+        FunctionId::ShaderNamed => Some((
+            "gives a gray shader: the shaders of GroIMP projects are not read",
+            "write `new RGBAShader(red, green, blue)` or a `Phong`",
+        )),
+        _ => None,
+    }
+}
+
 impl Checker<'_> {
+    /// Warns of the call of a function that does nothing here.
+    pub(super) fn warn_of_nothing(&mut self, id: FunctionId, span: Span) {
+        if let Some((what, hint)) = idle(id) {
+            let message = format!("`{}` {what}", id.signature().name);
+            self.report(Diagnostic::warning("does-nothing", span, message).hint(hint));
+        }
+    }
+
     /// Classes inside methods.
     pub(super) fn refuse_class(&mut self, class: &ast::Class) {
         let keyword = class.keyword.name.as_str();

@@ -22,7 +22,9 @@ pub(super) enum Accessor {
     SetColor,
     /// `setColor(0xRRGGBB)`: likewise.
     SetColorBits,
-    /// `setAxis(v)`, `getAxis()` of a parallelogram: half its width as a vector.
+    /// `setAxis(x, y, z)` of a parallelogram: half its width as three numbers.
+    SetAxis,
+    /// `getAxis()` of a parallelogram: half its width as a vector.
     GetAxis,
 }
 
@@ -71,6 +73,10 @@ impl Checker<'_> {
                 }
             }
             "getAxis" if has("width.full") => found.push(Accessor::GetAxis),
+            "setAxis" if has("width.full") => found.push(Accessor::SetAxis),
+            "setOpen" if has("baseOpen") && !has("topOpen") => {
+                found.push(Accessor::SetAll(&["baseOpen"]));
+            }
             "setOpen" if has("baseOpen") && has("topOpen") => {
                 found.push(Accessor::SetAll(&["baseOpen", "topOpen"]));
             }
@@ -93,7 +99,7 @@ impl Checker<'_> {
                 .filter_map(|n| self.types.field(id, n))
                 .map(wanted)
                 .collect(),
-            Accessor::SetColor => vec![Wanted::Value(Type::Float); 3],
+            Accessor::SetColor | Accessor::SetAxis => vec![Wanted::Value(Type::Float); 3],
             Accessor::SetColorBits => vec![Wanted::Value(Type::Int)],
         };
         let names = match accessor {
@@ -105,6 +111,7 @@ impl Checker<'_> {
                 .collect(),
             Accessor::SetColor => ["red", "green", "blue"].map(Cow::Borrowed).to_vec(),
             Accessor::SetColorBits => vec![Cow::Borrowed("rgb")],
+            Accessor::SetAxis => ["x", "y", "z"].map(Cow::Borrowed).to_vec(),
             Accessor::Get(_) | Accessor::GetAxis => vec![],
         };
         Overload {
@@ -160,7 +167,36 @@ impl Checker<'_> {
                 Some(set)
             }
             Accessor::GetAxis => self.axis(object, id, span),
+            Accessor::SetAxis => self.set_axis(object, id, args, span),
         }
+    }
+
+    fn set_axis(
+        &mut self,
+        object: Expr,
+        id: TypeId,
+        mut args: Vec<Expr>,
+        span: Span,
+    ) -> Option<Expr> {
+        let two = Expr {
+            kind: ExprKind::Constant(Constant::Float(2.0)),
+            ty: Type::Float,
+            span,
+        };
+        let half = args.first_mut()?;
+        let full = ExprKind::Binary {
+            op: Operator::Mul,
+            operands: Type::Float,
+            left: Box::new(half.clone()),
+            right: Box::new(two),
+        };
+        half.kind = full;
+        let fields = ["width.full", "axis.y", "axis.z"];
+        let fields: Option<Vec<FieldId>> = fields
+            .iter()
+            .map(|name| self.types.field(id, name))
+            .collect();
+        self.set_several(object, id, &fields?, args, span)
     }
 
     /// `object.field = value`, giving the value.

@@ -140,7 +140,8 @@ impl Checker<'_> {
                 | Accessor::SetAll(_)
                 | Accessor::SetColor
                 | Accessor::SetColorBits
-                | Accessor::GetAxis,
+                | Accessor::GetAxis
+                | Accessor::SetAxis,
             ) => {}
         }
     }

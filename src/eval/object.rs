@@ -16,6 +16,7 @@ use super::value::{Value, free};
 use crate::check::model::MethodId;
 use crate::graph::TypeId;
 use crate::library::ClassId;
+use crate::turtle::Layers;
 
 /// An object of a library class.
 #[derive(Debug)]
@@ -174,6 +175,10 @@ pub struct LightModel {
     pub depth: i32,
     /// Seed of its generator.
     pub seed: i64,
+    /// Power in W below which rays end.
+    pub min_power: f64,
+    /// Layers whose nodes take no part.
+    pub hidden: Layers,
 }
 
 impl Object {

@@ -91,7 +91,6 @@ impl Appearance for Value {
             ClassId::AreaLight => LampKind::Area {
                 exponent: f64::from(light.exponent),
             },
-            ClassId::Sky => LampKind::Sky,
             ClassId::SpotLight => LampKind::Spot {
                 inner: f64::from(light.inner_angle),
                 outer: f64::from(light.outer_angle),

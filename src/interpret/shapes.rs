@@ -31,6 +31,8 @@ pub(super) struct Fields {
     pub(super) mesh_file: FieldId,
     /// What an instance draws again.
     pub(super) prototype: FieldId,
+    /// The power density of a sky.
+    pub(super) sky_power: FieldId,
     /// The layer of a node.
     pub(super) layer: FieldId,
     /// Numbers of copies along x and y of a grid.
@@ -61,6 +63,7 @@ pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
         shader: field("ShadedNull", "shader"),
         mesh_file: field("Mesh", "file"),
         prototype: field("Instance", "prototype"),
+        sky_power: field("Sky", "powerDensity"),
         layer: field("Node", "layer"),
         counts: ["xCount", "yCount"].map(|f| field("GridClonerNode", f)),
         distances: ["xDistance", "yDistance"].map(|f| field("GridClonerNode", f)),
@@ -114,7 +117,7 @@ pub(super) fn shape_of<O: Payload>(
                 parallelogram(length(), DVec3::new(width / 2.0, y, z))
             }
             Primitive::Plane => Some((Shape::Plane, 0.0)),
-            Primitive::Text | Primitive::Light | Primitive::Mesh => None,
+            Primitive::Text | Primitive::Light | Primitive::Sky | Primitive::Mesh => None,
         },
         _ => None,
     }

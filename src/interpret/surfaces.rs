@@ -133,7 +133,24 @@ impl<S: Source> Painter<'_, S> {
         let Some(lamp) = light.and_then(Appearance::lamp) else {
             return Ok(());
         };
-        if !is_possible(&lamp) {
+        self.draw_lamp(node, &lamp, state)
+    }
+
+    /// Adds the light of a sky of its own power and of the colour of its own shader.
+    pub(super) fn draw_sky(&mut self, node: NodeId, state: &TurtleState) -> Result<(), Failure> {
+        let graph = self.source.graph();
+        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
+        let surface = shader.and_then(Appearance::surface);
+        let lamp = Lamp {
+            kind: LampKind::Sky,
+            color: surface.map_or([1.0; 3], |surface| surface.reflectance),
+            power: graph.get_f64(node, FIELDS.sky_power).unwrap_or(0.0),
+        };
+        self.draw_lamp(node, &lamp, state)
+    }
+
+    fn draw_lamp(&mut self, node: NodeId, lamp: &Lamp, state: &TurtleState) -> Result<(), Failure> {
+        if !is_possible(lamp) {
             self.warn(node, "impossible-lamp", IMPOSSIBLE_LAMP);
             return Ok(());
         }
@@ -141,7 +158,7 @@ impl<S: Source> Painter<'_, S> {
             let place = Place::default();
             return Err(self.not_finite(node, place));
         }
-        match shine(&lamp, state) {
+        match shine(lamp, state) {
             Shining::Dark => {}
             Shining::Source(light) => self.canvas.about.lights.push(light),
             Shining::Sky(radiance) => {

@@ -270,6 +270,7 @@ impl<'s, S: Source> Painter<'s, S> {
     ) -> Result<(), Failure> {
         match does {
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state),
+            Effect::Draw(Primitive::Sky) => self.draw_sky(node, state),
             Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place),
             Effect::Step { is_shoot: true, .. } | Effect::Draw(_) => {
                 if !has_own_look {

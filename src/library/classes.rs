@@ -49,7 +49,6 @@ classes! {
     SpotLight: PointLight, "Shines from a point into a cone along local z.";
     DirectionalLight: Light, "Parallel light along local z over all that lies downstream.";
     AreaLight: Light, "Makes the `Parallelogram` that carries it shine.";
-    Sky: Light, "Light from all directions of the sky.";
     LightModel, "Traces light through the scene and tells what each node absorbs.";
     Random, "A generator of its own (`java.util.Random`).";
     Number, "A boxed number.";

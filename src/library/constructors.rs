@@ -28,7 +28,6 @@ signatures! {
     SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
     DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 1 W/m².";
     AreaLight = "AreaLight"."new"() -> Void, Pure, "", "White, 100 W.";
-    Sky = "Sky"."new"() -> Void, Pure, "", "White, 1 W/m².";
     LightModel = "LightModel"."new"() -> Void, Pure, "", "Default numbers of rays and reflections.";
     LightModelOf = "LightModel"."new"(Int rays, Int depth) -> Void, Pure, "", "From numbers of rays and of reflections.";
     Random = "Random"."new"() -> Void, Random, "", "Seeded from the model's generator.";

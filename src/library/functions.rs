@@ -53,6 +53,8 @@ signatures! {
     ShaderNamed = ""."shader"(String name) -> Class(ClassId::ShaderRef), Pure, "", "A shader of a GroIMP project; gray here.";
     Export3d = ""."export3DScene"(String path, String format) -> Void, Prints, "", "Nothing: export with `understory export`.";
     Snapshot = ""."makeSnapshot"(String path) -> Void, Prints, "", "Nothing: make pictures with `understory render`.";
+    SnapshotSized = ""."makeSnapshot"(String path, Int width, Int height) -> Void, Prints, "", "Nothing: make pictures with `understory render`.";
+    SaveGraph = ""."saveGraph"(String path) -> Void, Prints, "", "Nothing: `understory derive --json` tells what a graph holds.";
     RunLater = ""."runLater"(Object argument) -> Void, Prints, "", "Nothing: there is no window.";
     Workbench = ""."workbench"() -> Object, Pure, "", "Null: there is no window.";
     RepaintView = ""."repaintView3D"() -> Void, Prints, "", "Nothing: there is no window.";

@@ -140,7 +140,6 @@ signatures! {
     DirectionalLightSetPowerDensity = "DirectionalLight"."setPowerDensity"(Float density) -> Void, Writes, "W/m²", "Power per area, the sum over red, green and blue.";
     AreaLightSetPower = "AreaLight"."setPower"(Float power) -> Void, Writes, "W", "Power, the sum over red, green and blue.";
     AreaLightSetExponent = "AreaLight"."setExponent"(Float exponent) -> Void, Writes, "", "Exponent of the cosine by which it shines.";
-    SkySetPowerDensity = "Sky"."setPowerDensity"(Float density) -> Void, Writes, "W/m²", "Power per area, the sum over red, green and blue.";
     LightModelSetSeed = "LightModel"."setSeed"(Long seed) -> Void, Writes, "", "Seed of its rays.";
     LightModelSetRayCount = "LightModel"."setRayCount"(Int rays) -> Void, Writes, "", "Number of rays.";
     LightModelSetDepth = "LightModel"."setDepth"(Int depth) -> Void, Writes, "", "Number of reflections.";
@@ -285,6 +284,20 @@ signatures! {
     LightGetColor = "Light"."getColor"() -> COLOR, Pure, "0..=1", "Colour of the light; setting it changes the light.";
     LightSetVisualize = "Light"."setVisualize"(Boolean isShown) -> Void, Writes, "", "Whether a window shows its rays; nothing here.";
     LightSetRaylength = "Light"."setRaylength"(Float length) -> Void, Writes, "", "Length of rays in a window; nothing here.";
+    LightSetIgnored = "Light"."setIgnoreShadows"(Boolean on) -> Void, Writes, "", "Whether fast previews draw its shadows; nothing here.";
+    PointLightPower = "PointLight"."getPower"() -> Float, Pure, "W", "Power, the sum over red, green and blue.";
+    PointLightSetExponent = "PointLight"."setAttenuationExponent"(Float exponent) -> Void, Writes, "", "How light fades in fast previews; nothing here: it fades with the square of the distance.";
+    PointLightSetDistance = "PointLight"."setAttenuationDistance"(Float distance) -> Void, Writes, "m", "Where light has faded to a half in fast previews; nothing here.";
+    SpotLightInnerAngle = "SpotLight"."getInnerAngle"() -> Float, Pure, "radians", "Half angle of full brightness.";
+    SpotLightOuterAngle = "SpotLight"."getOuterAngle"() -> Float, Pure, "radians", "Half angle of the cone.";
+    DirectionalLightPowerDensity = "DirectionalLight"."getPowerDensity"() -> Float, Pure, "W/m²", "Power per area, the sum over red, green and blue.";
+    AreaLightPower = "AreaLight"."getPower"() -> Float, Pure, "W", "Power, the sum over red, green and blue.";
+    AreaLightSetVisible = "AreaLight"."setVisible"(Boolean on) -> Void, Writes, "", "Whether windows show it; nothing here.";
+    LightModelSetLayerVisible = "LightModel"."setLayerVisible"(Int layer, Boolean visible) -> Void, Writes, "", "Whether nodes of a layer take part in its light.";
+    LightModelSetThreadCount = "LightModel"."setThreadCount"(Int n) -> Void, Writes, "", "Nothing: the number of threads is an option of the run.";
+    LightModelSetMinPower = "LightModel"."setMinPower"(Double power) -> Void, Writes, "W", "Power below which rays end.";
+    LightModelRayCount = "LightModel"."getRayCount"() -> Int, Pure, "", "Number of rays.";
+    LightModelDepth = "LightModel"."getDepth"() -> Int, Pure, "", "Number of reflections.";
     LightModelComputeForced = "LightModel"."compute"(Boolean isForced) -> Void, Writes, "", "Traces the light.";
     LightModelSensed = "LightModel"."getSensedIrradiance"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
     LightModelSensed3d = "LightModel"."getSensedIrradiance3d"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";

@@ -224,7 +224,7 @@ fn geometry(page: &mut String) {
     page.push_str(
         "Every property can be set after the constructor: `Box(1, 0.2, 0.3).(setShader(GREEN), setLayer(2))`, and read as `x[length]`.\n\n",
     );
-    let is_solid = |e| matches!(e, Effect::Draw(primitive) if primitive != Primitive::Light);
+    let is_solid = |e| matches!(e, Effect::Draw(primitive) if !matches!(primitive, Primitive::Light | Primitive::Sky));
     types(page, of_effect(is_solid));
     heading(page, "### Nodes that draw nothing, and what others extend");
     types(

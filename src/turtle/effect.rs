@@ -99,6 +99,7 @@ pub enum Primitive {
     Plane,
     Text,
     Light,
+    Sky,
     Mesh,
 }
 
@@ -107,7 +108,7 @@ impl Primitive {
     pub fn moves(self) -> bool {
         match self {
             Self::Box | Self::Cylinder | Self::Cone | Self::Frustum | Self::Parallelogram => true,
-            Self::Sphere | Self::Plane | Self::Text | Self::Light | Self::Mesh => false,
+            Self::Sphere | Self::Plane | Self::Text | Self::Light | Self::Sky | Self::Mesh => false,
         }
     }
 }

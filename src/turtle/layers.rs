@@ -35,6 +35,16 @@ impl Layers {
             self
         }
     }
+
+    /// Without this layer in it.
+    #[must_use]
+    pub fn without(self, layer: i32) -> Self {
+        if self.contains(layer) {
+            Self(self.0 & !(1 << layer))
+        } else {
+            self
+        }
+    }
 }
 
 impl FromStr for Layers {
@@ -78,6 +88,7 @@ mod tests {
         assert_eq!(layers.to_string(), "1,15");
         let shown: Vec<i32> = (-1..18).filter(|n| layers.contains(*n)).collect();
         assert_eq!(shown, [1, 15]);
+        assert_eq!(layers.without(1).without(2).to_string(), "15");
         assert_eq!("none".parse(), Ok(Layers::default()));
         assert!("16".parse::<Layers>().unwrap_err().contains("0 to 15"));
         assert!("".parse::<Layers>().is_err());

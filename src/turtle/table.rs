@@ -378,14 +378,32 @@ const BASIC: &[BuiltinType] = &[
         "ShadedNull",
         "Null",
         Effect::Group,
-        &[field(
+        &[
+            field(
             "shader",
             FieldType::Shader,
             0.0,
             "",
             "How it and what follows look; null: as the last node before that has a shader, or that of a shoot's colour.",
         )
-        .rare()],
+        .rare(),
+            field(
+                "treatedAsInfinite",
+                FieldType::Boolean,
+                0.0,
+                "",
+                "Whether GroIMP leaves it out of the bounds of the scene; no effect here.",
+            )
+            .rare(),
+            field(
+                "renderAsWireframe",
+                FieldType::Boolean,
+                0.0,
+                "",
+                "Whether windows draw its edges only; no effect here.",
+            )
+            .rare(),
+        ],
         NO_ARGUMENTS,
         "Everything that has a surface.",
     ),
@@ -409,6 +427,14 @@ const BASIC: &[BuiltinType] = &[
                 1.0,
                 "",
                 "Share of the length after which what follows stands, measured from the turtle's old place.",
+            )
+            .rare(),
+            field(
+                "scaleV",
+                FieldType::Boolean,
+                0.0,
+                "",
+                "Whether textures keep their scale along the length; no effect here.",
             )
             .rare(),
             field(
@@ -734,7 +760,7 @@ const GROUPS: [BuiltinType; 4] = [
     ),
 ];
 
-const SOLIDS: [BuiltinType; 12] = [
+const SOLIDS: [BuiltinType; 13] = [
     ty(
         "Sphere",
         "ShadedNull",
@@ -873,7 +899,17 @@ const SOLIDS: [BuiltinType; 12] = [
         "TextLabel",
         "Null",
         Effect::Draw(Primitive::Text),
-        &[field("caption", FieldType::String, 0.0, "", "The text.")],
+        &[
+            field("caption", FieldType::String, 0.0, "", "The text."),
+            field(
+                "height",
+                FieldType::Float,
+                1.0,
+                "m",
+                "Height of its letters; no effect here.",
+            )
+            .rare(),
+        ],
         &[&[], &["caption"]],
         "A text; not drawn.",
     ),
@@ -890,6 +926,21 @@ const SOLIDS: [BuiltinType; 12] = [
         )],
         NO_ARGUMENTS,
         "A lamp at the turtle's place.",
+    ),
+    ty(
+        "Sky",
+        "ShadedNull",
+        Effect::Draw(Primitive::Sky),
+        &[field(
+            "powerDensity",
+            FieldType::Float,
+            50.0,
+            "W/m²",
+            "Power on a level square metre, the sum over red, green and blue.",
+        )],
+        NO_ARGUMENTS,
+        "A sky of the colour of its own shader (white without one) that shines evenly from all sides. In GroIMP only a \
+         `SunSkyLight` makes it shine; for such a sky there are `--sun` and `--turbidity`.",
     ),
     ty(
         "SensorNode",

@@ -27,7 +27,6 @@ pub fn constructor(id: C) -> Maker {
         C::Phong => shaders::make_phong,
         C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,
         C::DirectionalLight => light::make_directional,
-        C::Sky => light::make_sky,
         C::LightModel | C::LightModelOf => light::make_model,
         C::Random => random::make,
         C::RandomSeed => random::make_seeded,

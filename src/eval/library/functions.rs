@@ -40,9 +40,14 @@ pub fn function(id: F) -> Behaviour {
         F::AngleNode => Native(places::angle),
         F::Chart | F::ChartNamed => Native(data::chart),
         F::ShaderNamed => Native(shaders::named),
-        F::Export3d | F::Snapshot | F::RunLater | F::Workbench | F::RepaintView | F::Gc => {
-            Native(system::nothing)
-        }
+        F::Export3d
+        | F::Snapshot
+        | F::SnapshotSized
+        | F::SaveGraph
+        | F::RunLater
+        | F::Workbench
+        | F::RepaintView
+        | F::Gc => Native(system::nothing),
         F::DefaultView => Native(system::view),
         F::Stop => Native(system::stop),
         F::Exit => Native(system::exit),

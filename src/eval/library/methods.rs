@@ -103,10 +103,9 @@ pub fn method(id: M) -> Behaviour {
         M::LightSetColor => light::set_color,
         M::LightSetColorMap => light::set_color_map,
         M::LightSetShadowless => system::nothing,
-        M::PointLightSetPower
-        | M::DirectionalLightSetPowerDensity
-        | M::AreaLightSetPower
-        | M::SkySetPowerDensity => light::set_power,
+        M::PointLightSetPower | M::DirectionalLightSetPowerDensity | M::AreaLightSetPower => {
+            light::set_power
+        }
         M::SpotLightSetInnerAngle => light::set_inner_angle,
         M::SpotLightSetOuterAngle => light::set_outer_angle,
         M::AreaLightSetExponent => light::set_exponent,
@@ -237,7 +236,21 @@ pub fn method(id: M) -> Behaviour {
         M::WriterPrintln | M::WriterPrintlnText | M::WriterNewLine => files::println,
         M::WriterWriteChar => files::write_char,
         M::WriterFlush => files::flush,
-        M::ViewRepaint | M::LightSetVisualize | M::LightSetRaylength => system::nothing,
+        M::ViewRepaint
+        | M::LightSetVisualize
+        | M::LightSetRaylength
+        | M::LightSetIgnored
+        | M::PointLightSetExponent
+        | M::PointLightSetDistance
+        | M::AreaLightSetVisible
+        | M::LightModelSetThreadCount => system::nothing,
+        M::PointLightPower | M::DirectionalLightPowerDensity | M::AreaLightPower => light::power,
+        M::SpotLightInnerAngle => light::inner_angle,
+        M::SpotLightOuterAngle => light::outer_angle,
+        M::LightModelSetLayerVisible => light::set_layer_visible,
+        M::LightModelSetMinPower => light::set_min_power,
+        M::LightModelRayCount => light::ray_count,
+        M::LightModelDepth => light::depth,
         M::ColorSet | M::ColorSetParts => shaders::set_rgb,
         M::LightGetColor => shaders::light_color,
         M::LightModelComputeForced | M::LightModelSensed | M::LightModelSensed3d => {
