@@ -262,9 +262,20 @@ fn a_grid_of_copies() {
     assert_eq!(drawn.summary.bounds.max.y, 8.5);
     assert!(Scene::build(drawn.scene).is_ok());
 
-    let none = draw("GridClonerNode(0, 1, 5, 1) Sphere(1)", "");
-    let root = &none.scene.groups[none.scene.root.unwrap().0 as usize];
-    assert!(root.instances.is_empty());
+    for empty in ["0, 1, 2000000000, 1", "2000000000, 1, 0, 1", "-1, 1, 5, 1"] {
+        let none = draw(&format!("GridClonerNode({empty}) Sphere(1)"), "");
+        let root = &none.scene.groups[none.scene.root.unwrap().0 as usize];
+        assert!(root.instances.is_empty(), "{empty}");
+    }
+    let limits = Limits {
+        memory: 1 << 20,
+        ..Limits::default()
+    };
+    let huge = "protected void init() [ Axiom ==> GridClonerNode(2000000000, 1, 2000000000, 1) Sphere(1); ]";
+    assert!(
+        interpret(&mut grow(huge), limits).is_err(),
+        "memory ends it"
+    );
     let nested = "GridClonerNode(1, 1, 1, 1) ".repeat(100);
     let text = format!("protected void init() [ Axiom ==> {nested} Sphere(1); ]");
     let failure = interpret(&mut grow(&text), Limits::default()).unwrap_err();

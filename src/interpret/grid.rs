@@ -45,6 +45,9 @@ impl<S: Source> Painter<'_, S> {
         let [d_x, d_y] = FIELDS
             .distances
             .map(|f| graph.get_f64(node, f).unwrap_or(0.0));
+        if n_y == 0 {
+            return Ok(());
+        }
         for x in 0..n_x {
             for y in 0..n_y {
                 let shift = DVec3::new(f64::from(x) * d_x, f64::from(y) * d_y, 0.0);
