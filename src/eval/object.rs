@@ -37,6 +37,10 @@ pub enum Data {
     Shader([f32; 4]),
     /// A `Phong` shader.
     Phong(Box<Phong>),
+    /// A `Mirror`, `Metal`, `Glass`, `Pane` or `LeafShader`.
+    Finish(Box<Finish>),
+    /// A `SideSwitchShader` or `MixShader`.
+    Shaders(Box<Shaders>),
     /// A source of light.
     Light(Light),
     /// A light model.
@@ -117,8 +121,36 @@ pub struct Phong {
     pub transparency: [f64; 3],
     pub emissive: [f64; 3],
     pub ambient: [f64; 3],
-    /// Exponent of the gloss.
-    pub shininess: f64,
+    /// Sharpness of the gloss, 0..=1.
+    pub shininess: Option<f64>,
+    /// Sharpness of what passes, 0..=1.
+    pub transparency_shininess: Option<f64>,
+    /// Whether the matt and the glossy part only get what does not pass.
+    pub is_interpolated: bool,
+}
+
+/// What a `Mirror`, `Metal`, `Glass`, `Pane` or `LeafShader` was given; its class says which.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finish {
+    /// Red, green, blue: reflectance; of a pane, its tint; of glass, its absorption in 1/m.
+    pub color: [f64; 3],
+    /// What a leaf scatters through.
+    pub through: [f64; 3],
+    /// Index of refraction.
+    pub ior: f64,
+    /// 0 (smooth) to 1.
+    pub roughness: f64,
+}
+
+/// Two shaders in one; its class says how they share the surface.
+#[derive(Clone, Debug)]
+pub struct Shaders {
+    /// The front one.
+    pub first: Value,
+    /// The back one.
+    pub second: Value,
+    /// The second's share of a mixture, 0..=1.
+    pub share: f64,
 }
 
 impl Default for Phong {
@@ -131,7 +163,9 @@ impl Default for Phong {
             transparency: black,
             emissive: black,
             ambient: black,
-            shininess: 0.5,
+            shininess: None,
+            transparency_shininess: None,
+            is_interpolated: true,
         }
     }
 }
@@ -242,6 +276,10 @@ impl Object {
             }
             Data::Reversed(value) => parts.push(std::mem::take(value)),
             Data::Function(_, captured) => parts.append(captured),
+            Data::Shaders(pair) => {
+                parts.push(std::mem::take(&mut pair.first));
+                parts.push(std::mem::take(&mut pair.second));
+            }
             _ => {}
         }
     }
@@ -313,7 +351,11 @@ impl Object {
             }
             Data::Table(table) => out.push_str(&table.title),
             Data::File(path) => out.push_str(&path),
-            Data::Tokens(_) | Data::Row(..) | Data::LightColor(_) => {
+            Data::Tokens(_)
+            | Data::Row(..)
+            | Data::LightColor(_)
+            | Data::Finish(_)
+            | Data::Shaders(_) => {
                 out.push_str(self.class.name());
             }
             Data::Entry(entry, _) => {

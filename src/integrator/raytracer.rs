@@ -287,7 +287,10 @@ impl Vertex<'_> {
             }
             LobeKind::Through => [None, None],
             LobeKind::Mirror(_) | LobeKind::Pane { .. } => [toward(0.0).map(|s| (s, 1.0)), None],
-            LobeKind::Phong { .. } | LobeKind::Rough { .. } | LobeKind::Dielectric { .. } => {
+            LobeKind::Phong { .. }
+            | LobeKind::Haze { .. }
+            | LobeKind::Rough { .. }
+            | LobeKind::Dielectric { .. } => {
                 [toward(sampler.point(Use::Lobe).y).map(|s| (s, 1.0)), None]
             }
         }

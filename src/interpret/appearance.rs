@@ -1,40 +1,18 @@
 //! What the interpreter reads of the shaders and lights that fields of nodes hold.
 
 use crate::graph::Payload;
+use crate::material::Material;
 
 /// Objects of the model that say how a surface looks or what a lamp sends out.
 pub trait Appearance: Payload {
-    /// The surface it describes, if it is a shader.
-    fn surface(&self) -> Option<Surface>;
+    /// The surface it describes, if it is a shader. Its numbers are the model's and may be impossible.
+    fn surface(&self) -> Option<Material>;
 
     /// The lamp it describes, if it is a light.
     fn lamp(&self) -> Option<Lamp>;
 
     /// The text it is, if it is one, such as the name of a file.
     fn words(&self) -> Option<&str>;
-}
-
-/// How a surface looks, both sides alike; linear red, green, blue. Values are the model's and may be impossible.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Fraction that is scattered back, 0..=1.
-    pub reflectance: [f64; 3],
-    /// Fraction that is scattered through, 0..=1.
-    pub transmittance: [f64; 3],
-    /// Fraction of the light that meets the surface at all, 0..=1; the rest passes straight through.
-    pub alpha: f64,
-}
-
-impl Surface {
-    /// An opaque surface that transmits nothing.
-    #[must_use]
-    pub const fn opaque(reflectance: [f64; 3]) -> Self {
-        Self {
-            reflectance,
-            transmittance: [0.0; 3],
-            alpha: 1.0,
-        }
-    }
 }
 
 /// A lamp, as the model describes it.

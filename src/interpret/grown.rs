@@ -1,7 +1,8 @@
 //! A [`Growth`] as a source of drawings: its graph, its bodies, and what its shaders and lamps are.
 
-use super::appearance::{Appearance, Lamp, LampKind, Surface};
+use super::appearance::{Appearance, Lamp, LampKind};
 use super::failure::Failure;
+use super::shaders;
 use super::source::{Body, Source};
 use crate::diag::Span;
 use crate::eval::files::ModelFiles;
@@ -10,6 +11,7 @@ use crate::eval::{Purity, Value};
 use crate::graph::{Graph, NodeId, TypeId};
 use crate::growth::Growth;
 use crate::library::ClassId;
+use crate::material::Material;
 use crate::rewrite::Instantiated;
 
 impl Source for Growth {
@@ -52,25 +54,8 @@ impl Source for Growth {
 }
 
 impl Appearance for Value {
-    fn surface(&self) -> Option<Surface> {
-        match &*self.as_object()?.lock() {
-            Data::Shader(rgba) => {
-                let [r, g, b, alpha] = rgba.map(f64::from);
-                Some(Surface {
-                    alpha,
-                    ..Surface::opaque([r, g, b])
-                })
-            }
-            Data::Phong(phong) => {
-                let [r, g, b] = phong.transparency;
-                Some(Surface {
-                    reflectance: phong.diffuse,
-                    transmittance: phong.diffuse_transparency,
-                    alpha: 1.0 - (r + g + b) / 3.0,
-                })
-            }
-            _ => None,
-        }
+    fn surface(&self) -> Option<Material> {
+        shaders::surface(self)
     }
 
     fn words(&self) -> Option<&str> {

@@ -32,12 +32,13 @@ mod lamps;
 mod materials;
 mod meshes;
 mod organs;
+mod shaders;
 mod shapes;
 mod source;
 mod surfaces;
 mod walk;
 
-pub use appearance::{Appearance, Lamp, LampKind, Surface};
+pub use appearance::{Appearance, Lamp, LampKind};
 pub use failure::{Failure, explain};
 pub use organs::{Organ, Organs};
 pub use source::{Body, Source};

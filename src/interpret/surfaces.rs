@@ -1,6 +1,6 @@
 //! How what a node draws looks: shader, colour, lamp.
 
-use super::appearance::{Appearance, Lamp, LampKind, Surface};
+use super::appearance::{Appearance, Lamp, LampKind};
 use super::failure::Failure;
 use super::lamps::{Shining, emission, is_possible, shine};
 use super::shapes::{FIELDS, parallelogram_area};
@@ -9,6 +9,7 @@ use super::walk::{Painter, Place};
 use crate::color::Rgb;
 use crate::geometry::Shape;
 use crate::graph::NodeId;
+use crate::material::Material;
 use crate::scene::description::MaterialId;
 use crate::turtle::effect::{Effect, Primitive};
 use crate::turtle::reading::shoot_color;
@@ -62,7 +63,7 @@ impl<S: Source> Painter<'_, S> {
         let graph = self.source.graph();
         let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
         let surface = shader.and_then(Appearance::surface)?;
-        let (material, problem) = self.materials.of(&surface, Rgb::BLACK);
+        let (material, problem) = self.materials.of(surface);
         if let Some(problem) = problem {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
         }
@@ -84,7 +85,7 @@ impl<S: Source> Painter<'_, S> {
         &mut self,
         node: NodeId,
         lamp: &Lamp,
-        surface: Option<Surface>,
+        surface: Option<Material>,
         shape: &Shape,
         to_group: &DAffine3,
     ) -> MaterialId {
@@ -102,8 +103,9 @@ impl<S: Source> Painter<'_, S> {
                 "carries a lamp that is no `AreaLight`; it shines like one",
             ),
         }
-        let filter = surface.map_or(Rgb::WHITE, |s| Rgb::from_array(s.reflectance));
-        let surface = surface.unwrap_or(Surface::opaque([0.5; 3]));
+        let filter = surface.as_ref();
+        let filter = filter.map_or(Rgb::WHITE, |surface| surface.sides[0].reflectance);
+        let surface = surface.unwrap_or_default();
         let radiance = if is_possible(lamp) {
             emission(
                 lamp,
@@ -115,7 +117,7 @@ impl<S: Source> Painter<'_, S> {
             self.warn(node, "impossible-lamp", IMPOSSIBLE_LAMP);
             Rgb::BLACK
         };
-        let (material, problem) = self.materials.of(&surface, radiance);
+        let (material, problem) = self.materials.of(surface.emitting(radiance, Rgb::BLACK));
         if let Some(problem) = problem {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
         }

@@ -5,6 +5,7 @@ use crate::eval::files::{ModelFiles, NoFiles};
 use crate::geometry::Shape;
 use crate::graph::{EdgeBits, Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::light::{Light, Sky};
+use crate::material::Material;
 use crate::rewrite::Instantiated;
 use crate::scene::Scene;
 use crate::scene::description::{OrganId, PlacedShape};
@@ -18,7 +19,8 @@ enum Object {
     #[default]
     Null,
     Node(NodeId),
-    Surface(Surface),
+    /// Reflectance, transmittance and alpha.
+    Surface([Rgb; 2], f64),
     Lamp(Lamp),
 }
 
@@ -30,7 +32,7 @@ impl Payload for Object {
     fn as_node(&self) -> Option<NodeId> {
         match self {
             Self::Node(node) => Some(*node),
-            Self::Null | Self::Surface(_) | Self::Lamp(_) => None,
+            Self::Null | Self::Surface(..) | Self::Lamp(_) => None,
         }
     }
 
@@ -48,9 +50,11 @@ impl Payload for Object {
 }
 
 impl Appearance for Object {
-    fn surface(&self) -> Option<Surface> {
+    fn surface(&self) -> Option<Material> {
         match self {
-            Self::Surface(surface) => Some(*surface),
+            Self::Surface([back, through], alpha) => {
+                Some(Material::leaf(*back, *through).with_alpha(*alpha))
+            }
             Self::Null | Self::Node(_) | Self::Lamp(_) => None,
         }
     }
@@ -58,7 +62,7 @@ impl Appearance for Object {
     fn lamp(&self) -> Option<Lamp> {
         match self {
             Self::Lamp(lamp) => Some(*lamp),
-            Self::Null | Self::Node(_) | Self::Surface(_) => None,
+            Self::Null | Self::Node(_) | Self::Surface(..) => None,
         }
     }
 
@@ -408,18 +412,14 @@ fn a_node_with_two_parents_is_drawn_once() {
 fn shaders_come_first_and_are_shared() {
     let mut world = World::new(&[]);
     let root = world.root();
-    let red = Object::Surface(Surface::opaque([1.0, 0.0, 0.0]));
+    let red = Object::Surface([Rgb::new(1.0, 0.0, 0.0), Rgb::BLACK], 1.0);
     for _ in 0..3 {
         let node = world.grow(root, "[ F(1,1,3)");
         world.set(node, "shader", red);
     }
     let leaf = world.grow(root, "[ Sphere(1)");
-    let impossible = Surface {
-        reflectance: [0.8; 3],
-        transmittance: [0.8; 3],
-        alpha: 0.5,
-    };
-    world.set(leaf, "shader", Object::Surface(impossible));
+    let impossible = Object::Surface([Rgb::splat(0.8); 2], 0.5);
+    world.set(leaf, "shader", impossible);
     let drawn = world.draw();
     assert_eq!(drawn.scene.materials.len(), 2);
     assert_eq!(
@@ -487,7 +487,11 @@ fn area_lights_send_their_power_from_the_front() {
             lamp(LampKind::Area { exponent: 1.0 }, 100.0),
         );
         if let Some(color) = shader {
-            world.set(panel, "shader", Object::Surface(Surface::opaque(color)));
+            world.set(
+                panel,
+                "shader",
+                Object::Surface([Rgb::from_array(color), Rgb::BLACK], 1.0),
+            );
         }
         let drawn = world.draw();
         let material = &drawn.scene.materials[shapes(&drawn)[0].material.0 as usize];

@@ -43,7 +43,13 @@ classes! {
     Graytone: ChannelMap, "A gray tone.";
     Shader, "What a surface looks like.";
     RGBAShader: Shader, "A matt (Lambertian) surface of one colour; the fraction 1 - alpha passes straight through.";
-    Phong: Shader, "A surface with diffuse, glossy and transmitted parts.";
+    Phong: Shader, "A surface with matt, glossy and transmitting parts, which add up.";
+    Mirror: Shader, "A mirror; it reflects the same part of the light at every angle.";
+    Metal: Shader, "A metal; at grazing angles it reflects all light.";
+    Glass: Shader, "The skin of a clear body (glass, water): reflects and refracts. For closed shapes.";
+    Pane: Shader, "A thin flat sheet of glass, as in a greenhouse: light goes straight on behind it. For single faces.";
+    LeafShader: Shader, "A matt leaf that scatters light back and through, the same on both sides.";
+    MixShader: Shader, "Two shaders, mixed finely.";
     Light, "What shines from a `LightNode`.";
     PointLight: Light, "Shines from a point into all directions.";
     SpotLight: PointLight, "Shines from a point into a cone along local z.";
@@ -96,7 +102,7 @@ classes! {
     View3D, "A window; there is none.";
     ShaderRef: Shader, "A shader of a GroIMP project, by name; gray.";
     AlgorithmSwitchShader: Shader, "One shader for pictures, another for light models.";
-    SideSwitchShader: Shader, "One shader for each side; the front one is drawn.";
+    SideSwitchShader: Shader, "One shader for each side of a surface.";
     FluxLightModel: LightModel, "A light model.";
     StringBuffer, "Text that can be changed.";
     StringBuilder: StringBuffer, "Text that can be changed.";

@@ -24,6 +24,18 @@ signatures! {
     ShaderBits = "RGBAShader"."new"(Int rgb) -> Void, Pure, "", "From the bits 0xRRGGBB; opaque.";
     ShaderRgba = "RGBAShader"."new"(Float red, Float green, Float blue, Float alpha) -> Void, Pure, "0..=1", "From red, green, blue, alpha.";
     Phong = "Phong"."new"() -> Void, Pure, "", "Half gray, matt.";
+    Mirror = "Mirror"."new"() -> Void, Pure, "", "Reflects all light.";
+    MirrorPart = "Mirror"."new"(Double reflectance) -> Void, Pure, "0..=1", "Reflects this part of the light.";
+    MirrorColor = "Mirror"."new"(Double red, Double green, Double blue) -> Void, Pure, "0..=1", "Reflects these parts of red, green, blue.";
+    Metal = "Metal"."new"(Double red, Double green, Double blue) -> Void, Pure, "0..=1", "Polished, of this colour.";
+    MetalRough = "Metal"."new"(Double red, Double green, Double blue, Double roughness) -> Void, Pure, "0..=1", "Of this colour; roughness 0 is polished.";
+    Glass = "Glass"."new"() -> Void, Pure, "", "Clear and smooth, index of refraction 1.5.";
+    GlassOf = "Glass"."new"(Double ior) -> Void, Pure, "", "Clear and smooth, with an index of refraction relative to what is around: water 1.33, glass 1.5, an air bubble in glass 0.667.";
+    Pane = "Pane"."new"() -> Void, Pure, "", "Clear, index of refraction 1.5.";
+    PaneOf = "Pane"."new"(Double ior) -> Void, Pure, "", "Clear, with an index of refraction.";
+    Leaf = "LeafShader"."new"(Double red, Double green, Double blue, Double redThrough, Double greenThrough, Double blueThrough) -> Void, Pure, "0..=1", "From the parts of red, green, blue that are scattered back and those that are scattered through.";
+    LeafColors = "LeafShader"."new"(Class(ClassId::RGBColor) reflectance, Class(ClassId::RGBColor) transmittance) -> Void, Pure, "", "From what is scattered back and what is scattered through.";
+    Mix = "MixShader"."new"(SHADER first, SHADER second, Double share) -> Void, Pure, "0..=1", "The share of the second, and the rest of the first.";
     PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";
     SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
     DirectionalLight = "DirectionalLight"."new"() -> Void, Pure, "", "White, 1 W/m².";
@@ -65,6 +77,7 @@ signatures! {
     WriterOfFlushed = "Writer"."new"(Class(ClassId::Writer) writer, Boolean isFlushed) -> Void, Pure, "", "Writes to another writer.";
     SwitchShader2 = "AlgorithmSwitchShader"."new"(SHADER view, SHADER light) -> Void, Pure, "", "For pictures and for light models.";
     SwitchShader3 = "AlgorithmSwitchShader"."new"(SHADER window, SHADER view, SHADER light) -> Void, Pure, "", "For the window, for pictures and for light models.";
+    SideShaderFront = "SideSwitchShader"."new"(SHADER front) -> Void, Pure, "", "For both sides.";
     SideShader = "SideSwitchShader"."new"(SHADER front, SHADER back) -> Void, Pure, "", "For the front and the back.";
     RgbColorZero = "RGBColor"."new"() -> Void, Pure, "", "Black.";
     ShaderOfColor = "RGBAShader"."new"(Class(ClassId::RGBColor) color) -> Void, Pure, "", "Of one colour, opaque.";

@@ -123,13 +123,19 @@ signatures! {
     ShaderSetBlue = "RGBAShader"."z="(Float value) -> Void, Writes, "0..=1", "Sets blue.";
     ShaderSetAlpha = "RGBAShader"."w="(Float value) -> Void, Writes, "0..=1", "Sets alpha.";
     PhongSetDiffuse = "Phong"."setDiffuse"(MAP color) -> Void, Writes, "0..=1", "Diffuse reflectance.";
-    PhongSetSpecular = "Phong"."setSpecular"(MAP color) -> Void, Writes, "0..=1", "Glossy reflectance.";
-    PhongSetShininess = "Phong"."setShininess"(MAP color) -> Void, Writes, "", "Sharpness of the gloss.";
-    PhongSetShininessValue = "Phong"."setShininess"(Float value) -> Void, Writes, "", "Sharpness of the gloss.";
-    PhongSetTransparency = "Phong"."setTransparency"(MAP color) -> Void, Writes, "0..=1", "Fraction that passes straight through.";
+    PhongSetSpecular = "Phong"."setSpecular"(MAP color) -> Void, Writes, "0..=1", "Glossy reflectance; black unless set.";
+    PhongSetShininess = "Phong"."setShininess"(MAP color) -> Void, Writes, "0..=1", "Sharpness of the gloss: with s = x (2 - x) the exponent is -2 / ln s; 1 is a mirror. Unless set the exponent is 4.";
+    PhongSetShininessValue = "Phong"."setShininess"(Float value) -> Void, Writes, "0..=1", "Sharpness of the gloss, as a gray.";
+    PhongSetTransparency = "Phong"."setTransparency"(MAP color) -> Void, Writes, "0..=1", "Fraction per colour that passes straight through.";
     PhongSetDiffuseTransparency = "Phong"."setDiffuseTransparency"(MAP color) -> Void, Writes, "0..=1", "Diffuse transmittance.";
+    PhongSetTransparencyShininess = "Phong"."setTransparencyShininess"(MAP color) -> Void, Writes, "0..=1", "Sharpness of what passes; 1, as without it: straight through.";
+    PhongSetInterpolatedTransparency = "Phong"."setInterpolatedTransparency"(Boolean value) -> Void, Writes, "", "Whether matt and glossy parts only get what does not pass (so it is unless set).";
+    MetalSetRoughness = "Metal"."setRoughness"(Double value) -> Void, Writes, "0..=1", "How rough; 0 is polished.";
+    GlassSetRoughness = "Glass"."setRoughness"(Double value) -> Void, Writes, "0..=1", "How rough the skin is; 0 is smooth.";
+    GlassSetAbsorption = "Glass"."setAbsorption"(Double red, Double green, Double blue) -> Void, Writes, "1/m", "What the body absorbs: after d metres the part exp(-absorption d) is left.";
+    PaneSetTint = "Pane"."setTint"(Double red, Double green, Double blue) -> Void, Writes, "0..=1", "The part of the light that is left after crossing the sheet at a right angle, reflections not counted.";
     PhongSetAmbient = "Phong"."setAmbient"(MAP color) -> Void, Writes, "0..=1", "Colour without light; used by fast previews only.";
-    PhongSetEmissive = "Phong"."setEmissive"(MAP color) -> Void, Writes, "0..=1", "Colour it shines with; used by fast previews only.";
+    PhongSetEmissive = "Phong"."setEmissive"(MAP color) -> Void, Writes, "0..=1", "Radiance it shines with on both sides, W/(m² sr).";
 
     LightSetColor = "Light"."setColor"(Float red, Float green, Float blue) -> Void, Writes, "0..=1", "Colour of the light.";
     LightSetColorMap = "Light"."setColor"(COLOR color) -> Void, Writes, "0..=1", "Colour of the light.";

@@ -42,6 +42,11 @@ pub enum LobeKind {
         /// n.
         exponent: f64,
     },
+    /// Phong's lobe round the direction straight on, behind the surface: light passes, blurred.
+    Haze {
+        /// n.
+        exponent: f64,
+    },
     /// Mirrors in tiny facets that are tilted at random (GGX).
     Rough {
         /// α: the squared perceived roughness, above 0, at most 1.
@@ -120,15 +125,24 @@ impl Lobe {
         match self.kind {
             LobeKind::Mirror(_) | LobeKind::Pane { .. } | LobeKind::Through => true,
             LobeKind::Dielectric { alpha, .. } => alpha < SMOOTHEST_ALPHA,
-            LobeKind::Phong { .. } | LobeKind::Rough { .. } => false,
+            LobeKind::Phong { .. } | LobeKind::Haze { .. } | LobeKind::Rough { .. } => false,
         }
+    }
+
+    /// Whether a transparent body begins behind it.
+    #[must_use]
+    pub const fn is_body(&self) -> bool {
+        matches!(self.kind, LobeKind::Dielectric { .. })
     }
 
     /// Whether it lets light through in any way.
     #[must_use]
     pub const fn transmits(&self) -> bool {
         match self.kind {
-            LobeKind::Dielectric { .. } | LobeKind::Pane { .. } | LobeKind::Through => true,
+            LobeKind::Haze { .. }
+            | LobeKind::Dielectric { .. }
+            | LobeKind::Pane { .. }
+            | LobeKind::Through => true,
             LobeKind::Mirror(_) | LobeKind::Phong { .. } | LobeKind::Rough { .. } => false,
         }
     }
@@ -141,6 +155,7 @@ impl Lobe {
             LobeKind::Pane { ior, tint } => self.weight * sheet(cos.abs(), ior, tint).1,
             LobeKind::Mirror(_)
             | LobeKind::Phong { .. }
+            | LobeKind::Haze { .. }
             | LobeKind::Rough { .. }
             | LobeKind::Dielectric { .. } => Rgb::BLACK,
         }
@@ -153,7 +168,9 @@ impl Lobe {
             LobeKind::Mirror(reflection) | LobeKind::Rough { reflection, .. } => {
                 self.weight * reflection.at(cos)
             }
-            LobeKind::Phong { .. } | LobeKind::Dielectric { .. } => self.weight,
+            LobeKind::Phong { .. } | LobeKind::Haze { .. } | LobeKind::Dielectric { .. } => {
+                self.weight
+            }
             LobeKind::Pane { ior, tint } => self.weight * sheet(cos, ior, tint).0,
             LobeKind::Through => Rgb::BLACK,
         };
@@ -188,11 +205,17 @@ impl Lobe {
         }
         match self.kind {
             LobeKind::Mirror(reflection) => reflects(reflection),
-            LobeKind::Phong { exponent } if exponent >= 0.0 && exponent.is_finite() => Ok(()),
-            LobeKind::Phong { exponent } => Err(MaterialError::Lobe {
-                quantity: "shininess",
-                value: exponent,
-            }),
+            LobeKind::Phong { exponent } | LobeKind::Haze { exponent }
+                if exponent >= 0.0 && exponent.is_finite() =>
+            {
+                Ok(())
+            }
+            LobeKind::Phong { exponent } | LobeKind::Haze { exponent } => {
+                Err(MaterialError::Lobe {
+                    quantity: "shininess",
+                    value: exponent,
+                })
+            }
             LobeKind::Rough { alpha, reflection } => {
                 if !(SMOOTHEST_ALPHA..=1.0).contains(&alpha) {
                     return Err(rough(alpha));

@@ -196,18 +196,19 @@ impl Material {
     /// exact for matt surfaces, mirrors, glass and panes.
     #[must_use]
     pub fn absorptance(&self, is_front: bool) -> Rgb {
-        let through = self.passing();
-        let rest = Rgb::WHITE - through - self.scattering().albedo(is_front);
+        let rest = Rgb::WHITE - self.claim(is_front);
         rest.map(|c| c.max(0.0)) * self.alpha
     }
 
-    /// Fraction that goes straight through whatever the angle, alpha not counted.
-    fn passing(&self) -> Rgb {
-        let through = self
-            .lobes
-            .iter()
-            .filter(|lobe| lobe.kind == LobeKind::Through);
-        through.map(|lobe| lobe.weight).sum()
+    /// The share of the light arriving on a side (`true`: the front) that all parts together are given; more than 1 is
+    /// impossible. Alpha is not counted.
+    #[must_use]
+    pub fn claim(&self, is_front: bool) -> Rgb {
+        let side = self.sides[usize::from(!is_front)];
+        let lobes = self.lobes.iter();
+        let lobes = lobes.filter(|lobe| lobe.sides.include(is_front));
+        let matt = side.reflectance + side.transmittance;
+        lobes.fold(matt, |sum, lobe| sum + lobe.weight)
     }
 
     /// Checks that the numbers describe a surface that can exist: all finite, reflectance, transmittance and alpha in
@@ -229,7 +230,7 @@ impl Material {
             side.validate(name)?;
         }
         for (side, is_front) in [("front", true), ("back", false)] {
-            let sum = (self.scattering().albedo(is_front) + self.passing()).max_channel();
+            let sum = self.claim(is_front).max_channel();
             if sum > 1.0 + ENERGY_EXCESS {
                 return Err(MaterialError::MakesLight { side, sum });
             }
@@ -241,8 +242,7 @@ impl Material {
         if self.lobes.len() > MAX_LOBES {
             return Err(MaterialError::TooManyLobes(self.lobes.len()));
         }
-        let is_body = |lobe: &&Lobe| matches!(lobe.kind, LobeKind::Dielectric { .. });
-        if self.lobes.iter().filter(is_body).count() > 1 {
+        if self.lobes.iter().filter(|lobe| lobe.is_body()).count() > 1 {
             return Err(MaterialError::TwoBodies);
         }
         self.lobes.iter().try_for_each(Lobe::validate)

@@ -175,6 +175,7 @@ impl Scattering<'_> {
             LobeKind::Dielectric { absorption, .. } => Some(absorption),
             LobeKind::Mirror(_)
             | LobeKind::Phong { .. }
+            | LobeKind::Haze { .. }
             | LobeKind::Rough { .. }
             | LobeKind::Pane { .. }
             | LobeKind::Through => None,
@@ -391,20 +392,6 @@ impl Scattering<'_> {
         let factors =
             lobes.map(|lobe| specular::compression(lobe, frame.is_in_front(wo), transport));
         factors.product()
-    }
-
-    /// Fraction per channel of the light arriving on the given side (`true`: the front) that its parts have a claim on: all
-    /// that is not absorbed for certain. Light that goes straight through is not counted.
-    #[must_use]
-    pub fn albedo(&self, is_front: bool) -> Rgb {
-        let side = self.sides[usize::from(!is_front)];
-        let lobes = self
-            .lobes
-            .iter()
-            .filter(|lobe| lobe.sides.include(is_front) && lobe.kind != LobeKind::Through);
-        lobes.fold(side.reflectance + side.transmittance, |sum, lobe| {
-            sum + lobe.weight
-        })
     }
 }
 

@@ -8,7 +8,7 @@ use crate::color::Rgb;
 use crate::math::frame::Frame;
 use crate::math::functions::{cos, pow, sin};
 use crate::math::tolerance::SMOOTHEST_ALPHA;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// A surface point seen from one side.
@@ -93,8 +93,10 @@ pub(super) fn value_cos(lobe: &Lobe, spot: &Spot, wi: DVec3, transport: Transpor
     let wo = spot.wo;
     match lobe.kind {
         LobeKind::Phong { exponent } if wi.z > 0.0 => {
-            let cos = reflected(wo, DVec3::Z).dot(wi).max(0.0);
-            lobe.weight * ((exponent + 2.0) / TAU * pow(cos, exponent) * wi.z)
+            lobe.weight * (phong(reflected(wo, DVec3::Z), wi, exponent) * wi.z)
+        }
+        LobeKind::Haze { exponent } if wi.z < 0.0 => {
+            lobe.weight * (phong(-wo, wi, exponent) * -wi.z)
         }
         LobeKind::Rough { alpha, reflection } => match microfacet::reflection(wo, wi, alpha) {
             Some(facets) => lobe.weight * reflection.at(facets.cos_facet) * facets.value_cos,
@@ -127,9 +129,9 @@ pub(super) fn pdf_solid_angle(lobe: &Lobe, spot: &Spot, wi: DVec3) -> f64 {
     let wo = spot.wo;
     match lobe.kind {
         LobeKind::Phong { exponent } if wi.z > 0.0 => {
-            let cos = reflected(wo, DVec3::Z).dot(wi).max(0.0);
-            (exponent + 1.0) / TAU * pow(cos, exponent)
+            phong_density(reflected(wo, DVec3::Z), wi, exponent)
         }
+        LobeKind::Haze { exponent } if wi.z < 0.0 => phong_density(-wo, wi, exponent),
         LobeKind::Rough { alpha, .. } => {
             microfacet::reflection(wo, wi, alpha).map_or(0.0, |facets| facets.pdf_solid_angle)
         }
@@ -162,12 +164,12 @@ pub(super) fn sample(
             Some(mirrored(wo, lobe.weight * sheet(spot.cos_g, ior, tint).0))
         }
         LobeKind::Phong { exponent } => {
-            // Density (n + 1)/2π cosⁿ round the mirrored direction.
-            let z = pow(1.0 - u.x, 1.0 / (exponent + 1.0));
-            let radius = (1.0 - z * z).max(0.0).sqrt();
-            let round = DVec3::new(radius * cos(TAU * u.y), radius * sin(TAU * u.y), z);
-            let wi = Frame::from_normal(reflected(wo, DVec3::Z)).to_world(round);
+            let wi = sample_phong(reflected(wo, DVec3::Z), exponent, u);
             (wi.z > 0.0).then_some(Event::Smooth { wi })
+        }
+        LobeKind::Haze { exponent } => {
+            let wi = sample_phong(-wo, exponent, u);
+            (wi.z < 0.0).then_some(Event::Smooth { wi })
         }
         LobeKind::Rough { alpha, .. } => {
             let wi = reflected(wo, microfacet::visible_normal(wo, alpha, u));
@@ -196,6 +198,29 @@ pub(super) fn sample(
         }
         LobeKind::Through => None,
     }
+}
+
+/// (n + 2)/2π cosⁿ of the angle to the axis: with a further cosine to the surface it integrates to at most 1.
+fn phong(axis: DVec3, wi: DVec3, exponent: f64) -> f64 {
+    (exponent + 2.0) / TAU * lobe_power(axis, wi, exponent)
+}
+
+/// (n + 1)/2π cosⁿ: density per steradian of [`sample_phong`].
+fn phong_density(axis: DVec3, wi: DVec3, exponent: f64) -> f64 {
+    (exponent + 1.0) / TAU * lobe_power(axis, wi, exponent)
+}
+
+/// cosⁿ of the angle to the axis; 0 behind it, for n = 0 too.
+fn lobe_power(axis: DVec3, wi: DVec3, exponent: f64) -> f64 {
+    let cos = axis.dot(wi);
+    if cos > 0.0 { pow(cos, exponent) } else { 0.0 }
+}
+
+fn sample_phong(axis: DVec3, exponent: f64, u: DVec2) -> DVec3 {
+    let z = pow(1.0 - u.x, 1.0 / (exponent + 1.0));
+    let radius = (1.0 - z * z).max(0.0).sqrt();
+    let round = DVec3::new(radius * cos(TAU * u.y), radius * sin(TAU * u.y), z);
+    Frame::from_normal(axis).to_world(round)
 }
 
 fn mirrored(wo: DVec3, weight: Rgb) -> Event {

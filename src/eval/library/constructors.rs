@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     Arguments, Context, Maker, buffers, collections, data, files, light, moments, more, new_object,
-    random, shaders, strings, vectors,
+    random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -25,6 +25,13 @@ pub fn constructor(id: C) -> Maker {
         C::ShaderBits => shaders::make_bits,
         C::ShaderRgba => shaders::make_rgba,
         C::Phong => shaders::make_phong,
+        C::Mirror => surfaces::make_mirror,
+        C::MirrorPart => surfaces::make_gray,
+        C::MirrorColor | C::Metal | C::MetalRough => surfaces::make_colored,
+        C::Glass | C::GlassOf | C::Pane | C::PaneOf => surfaces::make_clear,
+        C::Leaf => surfaces::make_leaf,
+        C::LeafColors => surfaces::make_leaf_of_colors,
+        C::Mix => surfaces::make_mix,
         C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,
         C::DirectionalLight => light::make_directional,
         C::LightModel | C::LightModelOf => light::make_model,
@@ -44,8 +51,9 @@ pub fn constructor(id: C) -> Maker {
         C::ReaderPath | C::ReaderFile | C::ScannerPath => files::make_reader,
         C::ReaderOf | C::ScannerOf | C::WriterOf | C::WriterOfFlushed => files::make_same,
         C::WriterPath | C::WriterFile | C::WriterAppend | C::WriterFileAppend => files::make_writer,
-        C::SwitchShader2 | C::SideShader => first_of,
-        C::SwitchShader3 => second_of,
+        C::SwitchShader2 | C::SideShaderFront => first_of,
+        C::SwitchShader3 => second_or_first_of,
+        C::SideShader => surfaces::make_sides,
         C::RgbColorZero => shaders::make_color,
         C::ShaderOfColor => shaders::make_of_color,
         C::LightModelLeast => light::make_model,
@@ -69,8 +77,11 @@ fn first_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Tr
     Ok(args.at(0).clone())
 }
 
-fn second_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    Ok(args.at(1).clone())
+/// As GroIMP does: without a shader for pictures, that of the window.
+fn second_or_first_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
+    let second = args.at(1);
+    let is_null = matches!(second, Value::Null);
+    Ok(if is_null { args.at(0) } else { second }.clone())
 }
 
 fn boxed(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {

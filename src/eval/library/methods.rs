@@ -3,7 +3,8 @@
 use super::Behaviour::{self, Native};
 use super::{
     Arguments, Context, arrays, buffers, collections, data, deques, files, getter, keyed, light,
-    moments, more, numbers, ordering, random, setter, shaders, strings, system, values, vectors,
+    moments, more, numbers, ordering, random, setter, shaders, strings, surfaces, system, values,
+    vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
@@ -98,6 +99,10 @@ pub fn method(id: M) -> Behaviour {
         M::PhongSetShininessValue => shaders::set_shininess,
         M::PhongSetTransparency => shaders::set_transparency,
         M::PhongSetDiffuseTransparency => shaders::set_diffuse_transparency,
+        M::PhongSetTransparencyShininess => shaders::set_transparency_shininess,
+        M::PhongSetInterpolatedTransparency => shaders::set_interpolated,
+        M::MetalSetRoughness | M::GlassSetRoughness => surfaces::set_roughness,
+        M::GlassSetAbsorption | M::PaneSetTint => surfaces::set_color,
         M::PhongSetAmbient => shaders::set_ambient,
         M::PhongSetEmissive => shaders::set_emissive,
         M::LightSetColor => light::set_color,

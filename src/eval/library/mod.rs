@@ -27,6 +27,7 @@ mod precise;
 mod random;
 mod shaders;
 mod strings;
+mod surfaces;
 mod system;
 mod vectors;
 

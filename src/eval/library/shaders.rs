@@ -224,18 +224,44 @@ pub(super) fn set_emissive(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
     set_channel(cx, args, |p| &mut p.emissive)
 }
 
-/// The exponent of the gloss as a map: its mean counts.
+/// The mean of a map.
+fn mean(cx: &Context<'_>, args: &[Value]) -> Result<Option<f64>, Trap> {
+    Ok(match &*cx.object(args, 1)?.lock() {
+        Data::Color(c) => Some(c.iter().sum::<f64>() / 3.0),
+        _ => None,
+    })
+}
+
+fn change(
+    cx: &Context<'_>,
+    args: &[Value],
+    change: impl FnOnce(&mut Phong),
+) -> Result<Value, Trap> {
+    if let Data::Phong(phong) = &mut *cx.object(args, 0)?.lock() {
+        change(phong);
+    }
+    Ok(Value::Null)
+}
+
+/// The sharpness of the gloss as a map: its mean counts.
 pub(super) fn set_shininess_map(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    let mean = match &*cx.object(args, 1)?.lock() {
-        Data::Color(c) => c.iter().sum::<f64>() / 3.0,
-        _ => return Ok(Value::Null),
-    };
-    set_shininess(cx, &[args.at(0).clone(), Value::Double(mean)])
+    let mean = mean(cx, args)?;
+    change(cx, args, |phong| phong.shininess = mean)
 }
 
 pub(super) fn set_shininess(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    if let Data::Phong(phong) = &mut *cx.object(args, 0)?.lock() {
-        phong.shininess = args.double(1);
-    }
-    Ok(Value::Null)
+    change(cx, args, |phong| phong.shininess = Some(args.double(1)))
+}
+
+pub(super) fn set_transparency_shininess(
+    cx: &mut Context<'_>,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let mean = mean(cx, args)?;
+    change(cx, args, |phong| phong.transparency_shininess = mean)
+}
+
+pub(super) fn set_interpolated(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let is_interpolated = args.at(1).as_boolean().unwrap_or(true);
+    change(cx, args, |phong| phong.is_interpolated = is_interpolated)
 }
