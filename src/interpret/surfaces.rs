@@ -145,7 +145,7 @@ impl<S: Source> Painter<'_, S> {
         let surface = shader.and_then(Appearance::surface);
         let lamp = Lamp {
             kind: LampKind::Sky,
-            color: surface.map_or([1.0; 3], |surface| surface.reflectance),
+            color: surface.map_or([1.0; 3], |surface| surface.sides[0].reflectance.to_array()),
             power: graph.get_f64(node, FIELDS.sky_power).unwrap_or(0.0),
         };
         self.draw_lamp(node, &lamp, state)
