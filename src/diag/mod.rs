@@ -267,15 +267,16 @@ impl From<Diagnostic> for Diagnostics {
 /// The candidate nearest to `name` (edit distance at most 3 and less than half its length, or a substring), for hints.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count().div_ceil(2)).clamp(1, 3);
+    let a = name.to_lowercase();
     let distance = |c: &str| {
-        let (a, b) = (name.to_lowercase(), c.to_lowercase());
+        let b = c.to_lowercase();
         let within = a.len() >= 3 && (b.contains(&a) || (c.len() >= 3 && a.contains(&b)));
-        let d = strsim::damerau_levenshtein(&a, &b);
-        if d <= limit {
-            Some(d)
-        } else {
-            within.then_some(limit + 1)
-        }
+        // Each letter more or less is one edit; most candidates are told by that.
+        let is_near = a.chars().count().abs_diff(b.chars().count()) <= limit;
+        is_near
+            .then(|| strsim::damerau_levenshtein(&a, &b))
+            .filter(|&d| d <= limit)
+            .or(within.then_some(limit + 1))
     };
     candidates
         .into_iter()

@@ -5,7 +5,7 @@ use super::brackets::Brackets;
 use super::cut::{Cutter, Tokens};
 use super::excerpt::Excerpt;
 use super::explain::{Explanation, explain};
-use super::parse::{Reach, Reader, Unit, reach};
+use super::parse::{Reach, Reader, Unit, reach, reads};
 use super::scan::{MAX_NESTING, Problem, ProblemKind, Scan};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
 
@@ -144,7 +144,7 @@ impl Blamer<'_> {
         for item in self.cutter.parts(Unit::Item, &(0..scan.tokens.len())) {
             let bytes = self.cutter.bytes(&item);
             let reads = !self.is_faulty(bytes.start, bytes.end)
-                && reader.item_at(bytes.start, &self.cutter.text[bytes], &mut tree);
+                && reader.item_at(bytes.start, &scan.plain[bytes], &mut tree);
             if !reads && !self.is_full() {
                 self.unit(Unit::Item, &item);
             }
@@ -215,6 +215,7 @@ impl Blamer<'_> {
         let mut end = tokens.end;
         if !is_faulty
             && self.afford(excerpt.text.len())
+            && (bodies.is_empty() || !reads(unit, &excerpt.text))
             && let Reach::Byte(byte) = reach(unit, &excerpt.text)
         {
             let Explanation { diagnostic, rest } =
@@ -247,7 +248,7 @@ impl Blamer<'_> {
             let bytes = self.cutter.bytes(&part);
             let is_clean = !self.is_faulty(bytes.start, bytes.end)
                 && self.afford(bytes.len())
-                && reach(unit, &self.cutter.text[bytes]) == Reach::All;
+                && reads(unit, &self.cutter.scan.plain[bytes]);
             if !is_clean {
                 self.unit(unit, &part);
             }

@@ -32,7 +32,7 @@ impl Excerpt {
         }
         let bytes = cutter.bytes(tokens);
         self.pieces.push((self.text.len(), bytes.clone()));
-        self.text.push_str(&cutter.text[bytes]);
+        self.text.push_str(&cutter.scan.plain[bytes]);
         self.text.push(' ');
     }
 

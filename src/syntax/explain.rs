@@ -2,7 +2,7 @@
 
 use super::cut::{ARROWS, Cutter, Tokens};
 use super::excerpt::Excerpt;
-use super::parse::{Reach, Unit, reach};
+use super::parse::{Reach, Unit, reach, reads};
 use super::scan::TokenKind;
 use crate::diag::{Diagnostic, FileId, Span};
 
@@ -140,7 +140,7 @@ impl Case<'_, '_> {
             .filter(|_| self.at < self.tokens.end);
         let (head, tail) =
             text.split_at(token.map_or(text.len(), |token| self.excerpt.of_file(token.start)));
-        if reach(self.unit, &format!("{head};")) == Reach::All {
+        if reads(self.unit, &format!("{head};")) {
             return Some(Explanation {
                 diagnostic: self.missing_semicolon(),
                 rest: Some(self.at),

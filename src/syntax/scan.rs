@@ -57,6 +57,9 @@ pub(super) struct Problem {
 /// A text cut into tokens.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scan {
+    /// The text with as many spaces as there are bytes for each blank and remark between tokens. This is what the grammar reads:
+    /// it skips blanks in front of all it tries, which takes a multiple of the time if there are several kinds of them.
+    pub(super) plain: String,
     pub(super) tokens: Vec<Token>,
     pub(super) problems: Vec<Problem>,
 }
@@ -83,8 +86,22 @@ pub(super) fn scan(text: &str) -> Scan {
         found: Scan::default(),
         nesting: Nesting::default(),
     };
+    scanner.found.plain.reserve_exact(text.len());
     while scanner.at < text.len() {
-        scanner.next();
+        let start = scanner.at;
+        let is_blank = scanner.next();
+        let Scan {
+            plain, problems, ..
+        } = &mut scanner.found;
+        // The line break behind an unclosed string stays, so that no quote of a later line closes it.
+        let is_kept = problems.last().is_some_and(|p| {
+            p.end == start && matches!(p.kind, ProblemKind::OpenString | ProblemKind::OpenChar)
+        });
+        if is_blank && !is_kept {
+            plain.extend(std::iter::repeat_n(' ', scanner.at - start));
+        } else {
+            plain.push_str(&text[start..scanner.at]);
+        }
     }
     scanner.found
 }
@@ -97,16 +114,30 @@ struct Scanner<'t> {
 }
 
 impl Scanner<'_> {
-    fn next(&mut self) {
+    /// Goes on by a token, a problem, a blank or a remark; says whether it was one of the last two.
+    fn next(&mut self) -> bool {
         let rest = &self.text[self.at..];
-        let Some(c) = rest.chars().next() else { return };
+        let Some(c) = rest.chars().next() else {
+            return true;
+        };
         if c.is_whitespace() || c == '\u{FEFF}' {
             self.at += c.len_utf8();
-        } else if rest.starts_with("//") {
+            return true;
+        }
+        if rest.starts_with("//") {
             self.at += rest.find(['\n', '\r']).unwrap_or(rest.len());
-        } else if rest.starts_with("/*") {
-            self.comment(rest);
-        } else if is_word_start(c) {
+            return true;
+        }
+        if rest.starts_with("/*") {
+            return self.comment(rest);
+        }
+        self.token(rest, c);
+        false
+    }
+
+    /// Goes on by what `rest` begins with, which is neither a blank nor a remark and has `c` as its first character.
+    fn token(&mut self, rest: &str, c: char) {
+        if is_word_start(c) {
             let len = rest.find(|c| !is_word_part(c)).unwrap_or(rest.len());
             self.push(TokenKind::Word, len);
         } else if c.is_ascii_digit()
@@ -163,14 +194,15 @@ impl Scanner<'_> {
         }
     }
 
-    fn comment(&mut self, rest: &str) {
-        match rest[2..].find("*/") {
-            Some(len) => self.at += len + 4,
-            None => {
-                self.problem(ProblemKind::OpenComment, 2);
-                self.at = self.text.len();
-            }
+    /// Goes on by a remark; says whether it is closed.
+    fn comment(&mut self, rest: &str) -> bool {
+        if let Some(len) = rest[2..].find("*/") {
+            self.at += len + 4;
+            return true;
         }
+        self.problem(ProblemKind::OpenComment, 2);
+        self.at = self.text.len();
+        false
     }
 
     fn quoted(&mut self, rest: &str, quote: char) {

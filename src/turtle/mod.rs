@@ -24,6 +24,11 @@ pub use table::{BuiltinField, BuiltinType, FieldType, builtin_types};
 
 /// A table that holds the built-in types; modules of a model are added to it.
 pub fn types() -> TypeTable {
+    static BUILT_IN: LazyLock<TypeTable> = LazyLock::new(built_in_types);
+    BUILT_IN.clone()
+}
+
+fn built_in_types() -> TypeTable {
     let mut table = TypeTable::default();
     for ty in builtin_types() {
         let fields: Vec<NewField> = ty.fields.iter().map(new_field).collect();

@@ -3,7 +3,7 @@
 use super::grammar::Rule;
 use super::item::with_dims;
 use super::{Reader, kids};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Span};
 use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Ident, Literal, Param, TypeRef, UnaryOp};
 use pest::iterators::Pair;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
@@ -242,7 +242,9 @@ impl Reader<'_> {
     pub(super) fn primary(&self, pair: Pair<'_, Rule>) -> Expr {
         let span = self.span(&pair);
         let kind = match pair.as_rule() {
-            Rule::literal => self.literal(pair),
+            Rule::int | Rule::float | Rule::string | Rule::character | Rule::literal_word => {
+                self.literal(&pair)
+            }
             Rule::query => match kids(pair).next() {
                 Some(pattern) => ExprKind::Query(Box::new(self.pattern(pattern))),
                 None => ExprKind::Broken,
@@ -287,8 +289,15 @@ impl Reader<'_> {
     }
 
     fn name(&self, pair: Pair<'_, Rule>) -> Expr {
-        let name = self.first_ident(&pair);
-        let rest = kids(pair).nth(1);
+        let mut parts = kids(pair);
+        match parts.next() {
+            Some(name) => self.name_of(self.ident(&name), parts.next()),
+            None => Self::broken(Span::default()),
+        }
+    }
+
+    /// A name with what stands behind it.
+    pub(super) fn name_of(&self, name: Ident, rest: Option<Pair<'_, Rule>>) -> Expr {
         match rest {
             Some(tail) if tail.as_rule() == Rule::lambda_tail => {
                 let ty = TypeRef {
@@ -394,11 +403,8 @@ impl Reader<'_> {
         }
     }
 
-    fn literal(&self, pair: Pair<'_, Rule>) -> ExprKind {
-        let span = self.span(&pair);
-        let Some(value) = pair.into_inner().next() else {
-            return ExprKind::Broken;
-        };
+    fn literal(&self, value: &Pair<'_, Rule>) -> ExprKind {
+        let span = self.span(value);
         let text = value.as_str().trim_end();
         let literal = match value.as_rule() {
             Rule::int
@@ -432,7 +438,7 @@ impl Reader<'_> {
     }
 }
 
-fn step(target: Expr, is_increment: bool, is_prefix: bool, span: crate::diag::Span) -> Expr {
+fn step(target: Expr, is_increment: bool, is_prefix: bool, span: Span) -> Expr {
     Expr {
         kind: ExprKind::IncDec {
             target: Box::new(target),

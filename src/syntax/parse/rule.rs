@@ -147,10 +147,14 @@ impl Reader<'_> {
         };
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::label => node.label = Some(self.first_ident(&kid)),
+                Rule::ident => node.name.path.push(self.ident(&kid)),
+                Rule::label_mark => node.label = node.name.path.pop(),
                 Rule::pattern_args => node.args = Some(self.pattern_args(kid)),
                 _ => node.name = self.plain_type(kid),
             }
+        }
+        if let (Some(first), Some(last)) = (node.name.path.first(), node.name.path.last()) {
+            node.name.span = first.span.to(last.span);
         }
         node
     }
@@ -368,14 +372,22 @@ impl Reader<'_> {
 
     fn rhs_node(&self, pair: Pair<'_, Rule>) -> RhsNode {
         let span = self.span(&pair);
-        let mut label: Option<Ident> = None;
+        let (mut label, mut name): (Option<Ident>, Option<Ident>) = (None, None);
         let mut expr = Self::broken(span);
         if self.is_too_long(&pair) {
             return RhsNode { label, expr, span };
         }
         for kid in kids(pair) {
+            if let Some(name) = name.take_if(|_| kid.as_rule() != Rule::label_mark) {
+                if matches!(kid.as_rule(), Rule::args | Rule::lambda_tail) {
+                    expr = self.name_of(name, Some(kid));
+                    continue;
+                }
+                expr = self.name_of(name, None);
+            }
             match kid.as_rule() {
-                Rule::label => label = Some(self.first_ident(&kid)),
+                Rule::ident => name = Some(self.ident(&kid)),
+                Rule::label_mark => label = name.take(),
                 Rule::root => {
                     expr = Expr {
                         kind: ExprKind::Name("^".to_owned()),
@@ -385,6 +397,9 @@ impl Reader<'_> {
                 Rule::with_block | Rule::member_access => expr = self.postfix(expr, kid),
                 _ => expr = self.primary(kid),
             }
+        }
+        if let Some(name) = name {
+            expr = self.name_of(name, None);
         }
         RhsNode { label, expr, span }
     }

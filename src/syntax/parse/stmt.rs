@@ -28,11 +28,8 @@ impl Reader<'_> {
                 let body = kids(pair).find(|kid| kid.as_rule() == Rule::block);
                 StmtKind::Block(body.map_or_else(Block::default, |body| self.block(body)))
             }
-            Rule::local_class => self.local_class(pair),
             Rule::labeled => return self.labeled(pair),
-            Rule::local => {
-                StmtKind::Local(kids(pair).flat_map(|kid| self.variables(kid)).collect())
-            }
+            Rule::local => self.local(pair),
             _ => self.compound(pair),
         };
         Stmt { kind, span }
@@ -93,24 +90,27 @@ impl Reader<'_> {
         })
     }
 
-    fn local_class(&self, pair: Pair<'_, Rule>) -> StmtKind {
+    /// Variables or a class, from their modifiers on.
+    fn local(&self, pair: Pair<'_, Rule>) -> StmtKind {
         let span = self.span(&pair);
         let mut modifiers = Modifiers::default();
         for kid in kids(pair) {
-            if kid.as_rule() == Rule::modifier_word {
-                self.modifier(&kid, &mut modifiers);
-            } else if kid.as_rule() == Rule::class {
-                return StmtKind::Class(Box::new(Class {
-                    span,
-                    ..self.class(kid, modifiers)
-                }));
+            match kid.as_rule() {
+                Rule::modifier_word => self.modifier(&kid, &mut modifiers),
+                Rule::variables => return StmtKind::Local(self.variables(kid, &modifiers)),
+                Rule::class => {
+                    return StmtKind::Class(Box::new(Class {
+                        span,
+                        ..self.class(kid, modifiers)
+                    }));
+                }
+                _ => {}
             }
         }
         StmtKind::Empty
     }
 
-    fn variables(&self, pair: Pair<'_, Rule>) -> Vec<LocalVar> {
-        let mut modifiers = Modifiers::default();
+    fn variables(&self, pair: Pair<'_, Rule>, modifiers: &Modifiers) -> Vec<LocalVar> {
         let mut ty = TypeRef {
             path: vec![],
             args: vec![],
@@ -120,7 +120,6 @@ impl Reader<'_> {
         let mut found = vec![];
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::modifier_word => self.modifier(&kid, &mut modifiers),
                 Rule::type_ref => ty = self.type_ref(kid),
                 Rule::declarator => {
                     let (name, dims, init) = self.declarator(kid);
@@ -191,7 +190,7 @@ impl Reader<'_> {
         let (mut init, mut cond, mut update) = (vec![], None, vec![]);
         for kid in kids(pair) {
             match kid.as_rule() {
-                Rule::for_init => init = kids(kid).map(|part| self.for_start(part)).collect(),
+                Rule::for_init => init = self.for_init(kid),
                 Rule::for_cond => cond = kids(kid).next().map(|cond| self.expr(cond)),
                 _ => update = kids(kid).map(|part| self.expr(part)).collect(),
             }
@@ -199,15 +198,29 @@ impl Reader<'_> {
         ForHead::Classic { init, cond, update }
     }
 
-    fn for_start(&self, pair: Pair<'_, Rule>) -> Stmt {
-        if pair.as_rule() == Rule::expr {
-            return Self::expr_stmt(self.expr(pair));
+    fn resource(&self, pair: Pair<'_, Rule>) -> Vec<LocalVar> {
+        match self.local(pair) {
+            StmtKind::Local(variables) => variables,
+            _ => vec![],
         }
+    }
+
+    fn for_init(&self, pair: Pair<'_, Rule>) -> Vec<Stmt> {
         let span = self.span(&pair);
-        Stmt {
-            kind: StmtKind::Local(self.variables(pair)),
-            span,
+        let mut modifiers = Modifiers::default();
+        let mut init = vec![];
+        for kid in kids(pair) {
+            match kid.as_rule() {
+                Rule::modifier_word => self.modifier(&kid, &mut modifiers),
+                Rule::variables => init.push(Stmt {
+                    kind: StmtKind::Local(self.variables(kid, &modifiers)),
+                    span,
+                }),
+                Rule::expr => init.push(Self::expr_stmt(self.expr(kid))),
+                _ => {}
+            }
         }
+        init
     }
 
     fn switch(&self, pair: Pair<'_, Rule>) -> StmtKind {
@@ -244,7 +257,7 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::resources => {
-                    resources.extend(kids(kid).flat_map(|part| self.variables(part)))
+                    resources.extend(kids(kid).flat_map(|part| self.resource(part)));
                 }
                 Rule::catch_clause => catches.push(self.catch_clause(kid)),
                 Rule::finally_clause => finally = kids(kid).next().map(|block| self.block(block)),
