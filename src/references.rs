@@ -129,6 +129,9 @@
 //! # PNG3
 //! W3C: Portable Network Graphics (PNG) Specification (Third Edition), 2025. <https://www.w3.org/TR/png-3/>
 //!
+//! # PieglTiller1997
+//! L. Piegl, W. Tiller: The NURBS Book. 2nd edition. Springer, 1997. <https://doi.org/10.1007/978-3-642-59223-2>
+//!
 //! # Preetham1999
 //! A. Preetham, P. Shirley, B. Smits: A Practical Analytic Model for Daylight. SIGGRAPH, 1999.
 //! <https://doi.org/10.1145/311535.311545>
@@ -175,6 +178,10 @@
 //! B. Walter, S. Marschner, H. Li, K. Torrance: Microfacet Models for Refraction through Rough Surfaces. Eurographics
 //! Symposium on Rendering, 2007. <https://doi.org/10.2312/EGWR/EGSR07/195-206>
 //!
+//! # Wang2008
+//! W. Wang, B. Jüttler, D. Zheng, Y. Liu: Computation of Rotation Minimizing Frames. ACM Transactions on Graphics 27(1), 2008.
+//! <https://doi.org/10.1145/1330511.1330513>
+//!
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.
 //! <https://doi.org/10.1080/00401706.1962.10490022>
@@ -190,6 +197,10 @@
 //! # Wyman2013
 //! C. Wyman, P.-P. Sloan, P. Shirley: Simple Analytic Approximations to the CIE XYZ Color Matching Functions. Journal of
 //! Computer Graphics Techniques 2(2), 2013. <https://jcgt.org/published/0002/02/01/>
+//!
+//! # Yuksel2011
+//! C. Yuksel, S. Schaefer, J. Keyser: Parameterization and Applications of Catmull–Rom Curves. Computer-Aided Design 43(7),
+//! 2011. <https://doi.org/10.1016/j.cad.2010.08.008>
 
 #![expect(
     clippy::doc_markdown,

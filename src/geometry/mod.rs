@@ -7,8 +7,10 @@
 //! image. All of it is `f64`.
 
 pub mod area;
+pub mod curved;
 pub mod import;
 pub mod interval;
+pub mod polygon;
 pub mod quadratic;
 pub mod reduce;
 pub mod triangle;

@@ -130,3 +130,20 @@ pub const LEAST_SOLID_ANGLE: f64 = 1e-3;
 /// Nearer, the point is within 1e-9 radii of the ball, and rounding may bring the edge of the cone past the horizon. Used by
 /// [`crate::scene`].
 pub const BALL_HORIZON: f64 = 1e-9;
+
+/// How near, relative to its size, two ends of a curve or surface are that count as one: a closed seam, a pole.
+///
+/// Far above the rounding of an evaluation (a few units of 2⁻⁵³ times the degree) and far below any gap that was meant. Used
+/// by [`crate::geometry::curved`].
+pub const SEAM: f64 = 1e-9;
+
+/// How far beside a place without a normal (a pole, a corner) of a curved surface its normal is taken, relative to its range.
+///
+/// The normal turns by less than that share of the surface's own turn; a hundred times smaller, at a pole, its digits would
+/// drown in rounding. Used by [`crate::geometry::curved`].
+pub const BESIDE: f64 = 1e-6;
+
+/// 1 - cosine of the smallest angle between two tangents that counts as a crease: half a degree.
+///
+/// Less is not seen as one; much less and rounding would crease smooth seams. Used by [`crate::geometry::curved`].
+pub const CREASE: f64 = 4e-5;

@@ -17,7 +17,6 @@ mod gltf;
 mod material;
 mod mtl;
 mod obj;
-mod polygon;
 
 pub use material::{MeshImage, MeshMaterial};
 

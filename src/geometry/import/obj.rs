@@ -4,8 +4,8 @@
 //! is wrong, mixes up corners with and without normals, and fans polygons that are not convex.
 
 use super::material::MeshMaterial;
-use super::polygon;
 use super::{FindBeside, ImportError, MeshFile, MeshPart, Room, TriangleMesh, is_sound, mtl};
+use crate::geometry::polygon;
 use glam::{DAffine3, DVec2, DVec3};
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -11,7 +11,7 @@ const MOST_CORNERS: usize = 1 << 16;
 /// Cuts the polygon with this outline; `push` gets the numbers of corners, in the polygon's own turn.
 ///
 /// `tests` is how many tests of points it may still take.
-pub(super) fn cut(
+pub(crate) fn cut(
     outline: &[DVec3],
     tests: &mut u64,
     mut push: impl FnMut([usize; 3]),
