@@ -73,6 +73,14 @@ fn small_models_make_pictures() {
 }
 
 #[test]
+fn a_still_life_of_meshes_and_curved_shapes() {
+    let drawn = example("meshes/still.rgg", &SMALL).draw();
+    let height = drawn.bounds.max.z;
+    assert!((0.5..0.7).contains(&height), "{height} m");
+    assert_shows_something("meshes/still.rgg", &drawn.image);
+}
+
+#[test]
 fn the_poplar_has_thousands_of_leaves() {
     let counts = example("poplar.rgg", &[]).grow().counts();
     let n_leaves = counts.iter().find(|(name, _)| name == "Leaf").unwrap().1;

@@ -308,7 +308,11 @@ impl ModelFiles for Files {
 }
 
 fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
-    let text = format!("protected void init() [ Axiom ==> M(0) {rules}; ]");
+    draw_with("", rules)
+}
+
+fn draw_with(before: &str, rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
+    let text = format!("{before}\nprotected void init() [ Axiom ==> M(0) {rules}; ]");
     let file = SourceMap::default().add("model.rgg", text.as_str());
     let (ast, mut diagnostics) = parse(file, &text);
     let (model, checked) = check(&[SourceModel {
@@ -338,7 +342,7 @@ fn a_mesh_is_read_once_and_stands_wherever_it_is_named() {
     let root = &drawn.scene.groups[drawn.scene.root.unwrap().0 as usize];
     let groups: Vec<u32> = root.instances.iter().map(|i| i.group.0).collect();
     assert_eq!(groups, [0, 1, 0]);
-    let meshes = |group: usize| {
+    let shared = |group: usize| {
         drawn.scene.groups[group]
             .shapes
             .iter()
@@ -347,7 +351,7 @@ fn a_mesh_is_read_once_and_stands_wherever_it_is_named() {
                 other => panic!("{other:?}"),
             })
     };
-    assert!(meshes(0).eq(meshes(1)), "one copy in memory");
+    assert!(shared(0).eq(shared(1)), "one copy in memory");
     let materials = |group: usize| {
         drawn.scene.groups[group]
             .shapes
@@ -398,4 +402,152 @@ fn files_that_cannot_be_drawn_are_named_with_their_reason() {
     }
     let nothing = draw("Mesh").unwrap();
     assert!(!nothing.warnings.is_empty());
+}
+
+/// The meshes of all groups, in the order they were drawn.
+fn meshes(drawn: &Interpretation) -> Vec<&TriangleMesh> {
+    let shapes = drawn.scene.groups.iter().flat_map(|group| &group.shapes);
+    shapes
+        .filter_map(|placed| match &placed.shape {
+            Shape::Mesh(mesh) => Some(&**mesh),
+            _ => None,
+        })
+        .collect()
+}
+
+fn mesh_file(mesh: &TriangleMesh) -> MeshFile {
+    let part = understory::geometry::import::MeshPart {
+        mesh: std::sync::Arc::new(mesh.clone()),
+        to_file: DAffine3::IDENTITY,
+        material: None,
+    };
+    MeshFile {
+        parts: vec![part],
+        ..MeshFile::default()
+    }
+}
+
+const FLAT: &str =
+    "float[] flat = { 0,0,0, 1,0,0, 2,0,0, 0,0,1, 1,0,1, 2,0,1, 0,0,3, 1,0,3, 2,0,3 };\n";
+
+#[test]
+fn surfaces_of_a_model_are_drawn_once_each() {
+    let rules = "NURBSSurface(new BezierSurface(flat, 3, 3)) [M(1) NURBSSurface(new BezierSurface(flat, 3, 3))] \
+                 NURBSSurface(new BezierSurface(flat, 3, 3)).(setShader(RED))";
+    let drawn = draw_with(FLAT, rules).unwrap();
+    assert!(drawn.warnings.is_empty(), "{:?}", drawn.warnings);
+    let root = &drawn.scene.groups[drawn.scene.root.unwrap().0 as usize];
+    let groups: Vec<u32> = root.instances.iter().map(|i| i.group.0).collect();
+    assert_eq!(groups, [0, 0, 1]);
+    let all = meshes(&drawn);
+    assert!(std::ptr::eq(all[0], all[1]), "one copy in memory");
+    assert!((area(&mesh_file(all[0])) - 6.0).abs() < 1e-6);
+    // u runs along the rows that the model gives, v from one to the next.
+    let far = all[0]
+        .positions
+        .iter()
+        .position(|p| *p == DVec3::new(2.0, 0.0, 3.0))
+        .unwrap();
+    assert_eq!(all[0].uvs[far], DVec2::ONE);
+    assert_eq!(drawn.summary.bounds.max, DVec3::new(2.0, 0.0, 4.0));
+}
+
+#[test]
+fn stems_rings_and_turned_shapes_have_their_volume() {
+    let pi = std::f64::consts::PI;
+    let half = "new BSplineOfVertices(new VertexListImpl(arc, 4), 2, false, true)";
+    for (rules, volume_wanted, tolerance) in [
+        (
+            "Sweep(new float[] {0,0,0,0.1, 0,0,2,0.1}).(setError(0.0001))",
+            0.02 * pi,
+            3e-3,
+        ),
+        (
+            "NURBSSurface(new ProfileSweep(new Circle(0.5), new Circle(2))).(setError(0.001))",
+            pi * pi,
+            3e-3,
+        ),
+        (
+            &format!("NURBSSurface(new SurfaceOfRevolution({half})).(setError(0.0005))"),
+            4.0 / 3.0 * pi,
+            3e-3,
+        ),
+        ("MeshNode(tetra())", 1.0 / 6.0, 1e-7),
+    ] {
+        let before = "const float S = 0.70710678f;\n\
+            float[] arc = { 0,0,-1,1, S,0,-S,S, 1,0,0,1, S,0,S,S, 0,0,1,1 };\n\
+            PolygonMesh tetra() { PolygonMesh m = new PolygonMesh(); \
+            m.setVertexData(new float[] {0,0,0, 1,0,0, 0,1,0, 0,0,1}); \
+            m.setIndexData(new int[] {0,2,1, 0,1,3, 1,2,3, 0,3,2}); return m; }\n";
+        let drawn = draw_with(before, rules).unwrap();
+        let found = volume(&mesh_file(meshes(&drawn)[0]));
+        assert!(
+            (found / volume_wanted - 1.0).abs() < tolerance,
+            "{rules}: {found} {volume_wanted}"
+        );
+    }
+}
+
+#[test]
+fn surfaces_that_cannot_be_drawn_say_why() {
+    for (rules, words) in [
+        (
+            "NURBSSurface(new BezierSurface(flat, 3, 4))",
+            "9 points do not fill rows of 4",
+        ),
+        (
+            "NURBSSurface(new BezierSurface(flat, 5, 3))",
+            "2, 3 or 4 numbers",
+        ),
+        (
+            "NURBSSurface(new BezierSurface(flat, 3, -3))",
+            "do not fill rows of -3",
+        ),
+        (
+            "NURBSSurface(new BSplineGrid(flat, 3, 3, 2, 7))",
+            "fewer than the 8 that its degree 7 needs",
+        ),
+        (
+            "NURBSSurface(new BSplineGrid(flat, 3, 3, 0, 1))",
+            "its degree is 0",
+        ),
+        (
+            "NURBSSurface(new ProfileSweep(new RegularPolygon(2), new Circle(1)))",
+            "3 to 4096 sides, not 2",
+        ),
+        (
+            "NURBSSurface(new ProfileSweep(new Circle(1), new InterpolatedCurve(new float[] {1,1,1})))",
+            "fewer than the 2",
+        ),
+        (
+            "NURBSSurface(new ProfileSweep(new Circle(0.0f/0.0f), new Circle(1)))",
+            "not a finite number",
+        ),
+        (
+            "NURBSSurface(new BezierSurface(flat, 3, 3)).(setError(0.0f))",
+            "",
+        ),
+        ("Sweep(flat)", "no multiple of 4"),
+        ("Sweep(new float[] {0,0,0,1, 0,0,0,2})", "fewer than the 2"),
+        (
+            "NURBSSurface(new ProfileSweep(new Circle(1), new Circle(2))).(setError(0.0000000001f))",
+            "more than 2097152 triangles",
+        ),
+    ] {
+        match draw_with(FLAT, rules) {
+            Ok(_) => assert_eq!(words, "", "{rules}"),
+            Err(fault) => {
+                assert!(
+                    fault.message.contains(words) && !words.is_empty(),
+                    "{rules}: {}",
+                    fault.message
+                );
+                assert_eq!(
+                    (fault.slug, fault.primary.is_some()),
+                    ("curved-surface", true)
+                );
+            }
+        }
+    }
+    assert!(!draw("NURBSSurface").unwrap().warnings.is_empty());
 }

@@ -146,6 +146,9 @@ fn builtin_type(ty: FieldType, node: TypeId) -> Type {
         FieldType::Transformation => Type::Object,
         FieldType::Shader => Type::Class(ClassId::Shader),
         FieldType::Light => Type::Class(ClassId::Light),
+        FieldType::Surface => Type::Class(ClassId::BSplineSurface),
+        FieldType::Polygons => Type::Class(ClassId::Polygons),
+        FieldType::Floats => Type::Array(Box::new(Type::Float)),
         FieldType::Node => Type::Node(node),
     }
 }

@@ -10,6 +10,7 @@ pub mod code;
 mod compile;
 pub mod decimal;
 pub mod files;
+pub mod freeform;
 pub mod hooks;
 pub mod library;
 pub mod machine;

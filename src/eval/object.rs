@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use glam::DVec3;
 
 use super::decimal::{java_double_to_string, java_float_to_string};
+use super::freeform::Freeform;
 use super::library::data::Table;
 use super::library::files::{TextReader, TextWriter};
 use super::library::more::Tokens;
@@ -69,6 +70,8 @@ pub enum Data {
     LightColor(Arc<Object>),
     /// The path of a file.
     File(String),
+    /// A curve, a curved surface or a mesh, and its share of the memory budget.
+    Freeform(Box<Freeform>, Charge),
     /// A text that is read.
     Reader(Box<TextReader>),
     /// A text that is written.
@@ -367,7 +370,9 @@ impl Object {
             Data::Reversed(_) | Data::Function(..) | Data::Pattern(_) | Data::Opaque => {
                 out.push_str(self.class.name());
             }
-            Data::Reader(_) | Data::Writer(_) => out.push_str(self.class.name()),
+            Data::Reader(_) | Data::Writer(_) | Data::Freeform(..) => {
+                out.push_str(self.class.name())
+            }
             Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
                 out.push_str(self.class.name());
             }

@@ -84,3 +84,14 @@ pub struct TriangleMesh {
     /// Texture coordinates per corner, or empty: u to the right, v upwards in the image, whose lower left corner is (0, 0).
     pub uvs: Vec<DVec2>,
 }
+
+impl TriangleMesh {
+    /// Bytes that its lists take.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.positions)
+            + size_of_val(&*self.triangles)
+            + size_of_val(&*self.normals)
+            + size_of_val(&*self.uvs)
+    }
+}

@@ -1,5 +1,6 @@
 //! What the interpreter reads of the shaders and lights that fields of nodes hold.
 
+use crate::eval::freeform::Freeform;
 use crate::graph::Payload;
 use crate::material::Material;
 
@@ -10,6 +11,9 @@ pub trait Appearance: Payload {
 
     /// The lamp it describes, if it is a light.
     fn lamp(&self) -> Option<Lamp>;
+
+    /// The curve, surface or mesh it describes, if it does; an array of numbers is a list of points.
+    fn freeform(&self) -> Option<Freeform>;
 
     /// The text it is, if it is one, such as the name of a file.
     fn words(&self) -> Option<&str>;

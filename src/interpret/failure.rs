@@ -101,6 +101,13 @@ pub(super) fn mesh_file(name: &str, file: &str, why: &str, made: &[Span]) -> Fai
     Box::new(made_at(fault, made))
 }
 
+/// A curved surface that cannot be drawn.
+pub(super) fn curved(name: &str, why: &str, made: &[Span]) -> Failure {
+    let message = format!("{name} cannot be drawn: {why}");
+    let fault = diagnostic(Severity::Error, "curved-surface", message, None);
+    Box::new(made_at(fault, made))
+}
+
 /// A file that the model may not use.
 pub(super) fn file_refused(message: String, hint: String, made: &[Span]) -> Failure {
     let fault = diagnostic(Severity::Error, "file-access", message, None);

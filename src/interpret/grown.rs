@@ -6,6 +6,7 @@ use super::shaders;
 use super::source::{Body, Source};
 use crate::diag::Span;
 use crate::eval::files::ModelFiles;
+use crate::eval::freeform::{Freeform, Points};
 use crate::eval::object::Data;
 use crate::eval::{Purity, Value};
 use crate::graph::{Graph, NodeId, TypeId};
@@ -56,6 +57,20 @@ impl Source for Growth {
 impl Appearance for Value {
     fn surface(&self) -> Option<Material> {
         shaders::surface(self)
+    }
+
+    fn freeform(&self) -> Option<Freeform> {
+        if let Some(array) = self.as_array() {
+            let data = (0..array.len()).filter_map(|i| array.get(i)?.as_double());
+            return Some(Freeform::Points(Points {
+                data: data.collect(),
+                dimension: 4,
+            }));
+        }
+        match &*self.as_object()?.lock() {
+            Data::Freeform(form, _) => Some((**form).clone()),
+            _ => None,
+        }
     }
 
     fn words(&self) -> Option<&str> {

@@ -7,8 +7,8 @@ use super::shapes::FIELDS;
 use super::source::Source;
 use super::walk::{Painter, Place};
 use crate::eval::files::FileFault;
+use crate::geometry::Shape;
 use crate::geometry::import::{self, MeshFile};
-use crate::geometry::{Shape, TriangleMesh};
 use crate::graph::NodeId;
 use crate::scene::description::{GroupId, MaterialId, PlacedShape};
 use crate::turtle::TurtleState;
@@ -85,7 +85,7 @@ impl<S: Source> Painter<'_, S> {
             let what = format!("draws `{name}`: {warning}");
             self.warn_of(node, "mesh-file", &what);
         }
-        let bytes: usize = read.parts.iter().map(|part| mesh_bytes(&part.mesh)).sum();
+        let bytes: usize = read.parts.iter().map(|part| part.mesh.bytes()).sum();
         self.charge(bytes, node, place)?;
         let read = Rc::new(read);
         self.mesh_files
@@ -133,12 +133,4 @@ impl<S: Source> Painter<'_, S> {
             FileFault::Refused { message, hint } => failure::file_refused(message, hint, made),
         }
     }
-}
-
-/// What the lists of a mesh take.
-fn mesh_bytes(mesh: &TriangleMesh) -> usize {
-    size_of_val(&*mesh.positions)
-        + size_of_val(&*mesh.triangles)
-        + size_of_val(&*mesh.normals)
-        + size_of_val(&*mesh.uvs)
 }

@@ -10,6 +10,7 @@
 //!   grid        `GridClonerNode`: groups drawn in a grid
 //!   shapes      one node → one shape
 //!   meshes      meshes from files
+//!   curved      curved surfaces and meshes that the model describes
 //!   surfaces    shader, colour or lamp of a node
 //!   materials   shaders and colours → materials, each once
 //!   lamps       lights → sources, emission
@@ -24,6 +25,7 @@ mod appearance;
 mod blame;
 mod body;
 mod canvas;
+mod curved;
 mod failure;
 mod grid;
 mod grown;

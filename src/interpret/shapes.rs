@@ -27,6 +27,13 @@ pub(super) struct Fields {
     pub(super) light: FieldId,
     /// The shader of what has a surface.
     pub(super) shader: FieldId,
+    /// What a curved surface is made of, a mesh, the points of a sweep.
+    pub(super) surface: FieldId,
+    pub(super) polygons: FieldId,
+    pub(super) sweep_points: FieldId,
+    /// How far triangles may be from a curved surface; whether the ends of a sweep are missing.
+    pub(super) curved_error: FieldId,
+    pub(super) sweep_open: [FieldId; 2],
     /// The file of a mesh.
     pub(super) mesh_file: FieldId,
     /// What an instance draws again.
@@ -61,6 +68,11 @@ pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
         area_light: field("Parallelogram", "light"),
         light: field("LightNode", "light"),
         shader: field("ShadedNull", "shader"),
+        surface: field("NURBSSurface", "surface"),
+        polygons: field("MeshNode", "polygons"),
+        sweep_points: field("Sweep", "points"),
+        curved_error: field("CurvedBase", "error"),
+        sweep_open: ["baseOpen", "topOpen"].map(|f| field("CurvedBase", f)),
         mesh_file: field("Mesh", "file"),
         prototype: field("Instance", "prototype"),
         sky_power: field("Sky", "powerDensity"),
@@ -117,7 +129,13 @@ pub(super) fn shape_of<O: Payload>(
                 parallelogram(length(), DVec3::new(width / 2.0, y, z))
             }
             Primitive::Plane => Some((Shape::Plane, 0.0)),
-            Primitive::Text | Primitive::Light | Primitive::Sky | Primitive::Mesh => None,
+            Primitive::Text
+            | Primitive::Light
+            | Primitive::Sky
+            | Primitive::Mesh
+            | Primitive::Surface
+            | Primitive::Sweep
+            | Primitive::Polygons => None,
         },
         _ => None,
     }

@@ -2,6 +2,7 @@ use super::*;
 use crate::color::{Rgb, palette};
 use crate::diag::{Diagnostic, FileId, Span};
 use crate::eval::files::{ModelFiles, NoFiles};
+use crate::eval::freeform::Freeform;
 use crate::geometry::Shape;
 use crate::graph::{EdgeBits, Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::light::{Light, Sky};
@@ -64,6 +65,10 @@ impl Appearance for Object {
             Self::Lamp(lamp) => Some(*lamp),
             Self::Null | Self::Node(_) | Self::Surface(..) => None,
         }
+    }
+
+    fn freeform(&self) -> Option<Freeform> {
+        None
     }
 
     fn words(&self) -> Option<&str> {

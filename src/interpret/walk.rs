@@ -2,6 +2,7 @@
 
 use super::body::Prototypes;
 use super::canvas::{About, Canvas};
+use super::curved::CurvedShapes;
 use super::failure::{self, Failure};
 use super::instance::Instances;
 use super::materials::Materials;
@@ -55,6 +56,7 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
     pub(super) mesh_files: MeshFiles,
+    pub(super) curved: CurvedShapes,
     n_nodes: u64,
     body_nodes: u64,
     /// Emptied, to be used again.
@@ -86,6 +88,7 @@ impl<'s, S: Source> Painter<'s, S> {
             prototypes: Prototypes::default(),
             instances: Instances::default(),
             mesh_files: MeshFiles::default(),
+            curved: CurvedShapes::default(),
             n_nodes: 0,
             body_nodes: 0,
             spare_ways: Vec::new(),
@@ -272,6 +275,14 @@ impl<'s, S: Source> Painter<'s, S> {
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state),
             Effect::Draw(Primitive::Sky) => self.draw_sky(node, state),
             Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place),
+            Effect::Draw(
+                primitive @ (Primitive::Surface | Primitive::Sweep | Primitive::Polygons),
+            ) => {
+                if !has_own_look {
+                    self.canvas.note_look(state.look);
+                }
+                self.draw_curved(node, primitive, state, place)
+            }
             Effect::Step { is_shoot: true, .. } | Effect::Draw(_) => {
                 if !has_own_look {
                     self.canvas.note_look(state.look);

@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, CharArray, Class, Double, Float, Int, Long, String, Text, Void,
+    Boolean, Char, CharArray, Class, Double, Float, FloatArray, Int, Long, String, Text, Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
@@ -101,6 +101,20 @@ signatures! {
     TreeMap = "TreeMap"."new"() -> Void, Pure, "", "Empty.";
     SetCapacity = "HashSet"."new"(Int n) -> Void, Pure, "", "Empty, with room.";
     StringCopy = "String"."new"(String text) -> Void, Pure, "", "The same text.";
+    VertexListImpl = "VertexListImpl"."new"(FloatArray data, Int dimension) -> Void, Pure, "m", "From coordinates: 2 of each point, 3, or 4 with its weight (x, y, z times it).";
+    CircleUnit = "Circle"."new"() -> Void, Pure, "", "Of radius 1.";
+    CircleOf = "Circle"."new"(Float radius) -> Void, Pure, "m", "Of this radius.";
+    RegularHexagon = "RegularPolygon"."new"() -> Void, Pure, "", "A hexagon of radius 1.";
+    RegularPolygonOf = "RegularPolygon"."new"(Int sideCount) -> Void, Pure, "", "With so many sides and radius 1.";
+    BSplineOfVertices = "BSplineOfVertices"."new"(Class(ClassId::VertexList) vertices, Int degree, Boolean periodic, Boolean bezier) -> Void, Pure, "", "From control points; closed if `periodic`, of Bézier pieces if `bezier`, else held by its ends.";
+    InterpolatedCurve = "InterpolatedCurve"."new"(FloatArray points) -> Void, Pure, "m", "Through points: x, y, z of each; closed if the last is the first.";
+    BezierSurface = "BezierSurface"."new"(FloatArray data, Int dimension, Int uCount) -> Void, Pure, "m", "From control points, `uCount` in a row.";
+    BSplineGrid = "BSplineGrid"."new"(FloatArray data, Int dimension, Int uCount, Int uDegree, Int vDegree) -> Void, Pure, "m", "From control points, `uCount` in a row, and degrees; held by its corners.";
+    ProfileSweep = "ProfileSweep"."new"(Class(ClassId::BSplineCurve) profile, Class(ClassId::BSplineCurve) trajectory) -> Void, Pure, "", "The profile stands at right angles to the trajectory.";
+    SkinnedSweep = "SkinnedSurface"."new"(Class(ClassId::BSplineSurface) sweep) -> Void, Pure, "", "The same surface.";
+    SkinnedSurface = "SkinnedSurface"."new"(Class(ClassId::Collection) curves) -> Void, Pure, "", "Over the curves of a list, which have the same degree and number of points.";
+    SurfaceOfRevolution = "SurfaceOfRevolution"."new"(Class(ClassId::BSplineCurve) profile) -> Void, Pure, "", "From a curve in the plane of x and z.";
+    PolygonMesh = "PolygonMesh"."new"() -> Void, Pure, "", "Empty.";
 }
 
 static BY_NAME: LazyLock<Index<ConstructorId>> =
@@ -118,6 +132,10 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
         ClassId::Reader,
         ClassId::Writer,
         ClassId::ShaderRef,
+        ClassId::VertexList,
+        ClassId::BSplineCurve,
+        ClassId::BSplineSurface,
+        ClassId::Polygons,
         ClassId::View3D,
         ClassId::Tuple3d,
         ClassId::Spectrum3d,

@@ -3,8 +3,8 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, CharArray, Class, Double, FileArray, Float, Int, Long, Node, Object,
-    ObjectArray, Objects, Same, String, StringArray, Text, Void,
+    Boolean, Char, CharArray, Class, Double, FileArray, Float, FloatArray, Int, IntArray, Long,
+    Node, Object, ObjectArray, Objects, Same, String, StringArray, Text, Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
@@ -362,6 +362,10 @@ signatures! {
     ThrowableMessage = "Throwable"."getMessage"() -> String, Pure, "", "Its message.";
     ThrowableSetMessage = "Throwable"."=message"(String message) -> Void, Writes, "", "Sets its message.";
     ThrowableLocalizedMessage = "Throwable"."getLocalizedMessage"() -> String, Pure, "", "Its message.";
+    MeshSetVertices = "PolygonMesh"."setVertexData"(FloatArray data) -> Void, Writes, "m", "x, y, z of each corner.";
+    MeshSetIndices = "PolygonMesh"."setIndexData"(IntArray data) -> Void, Writes, "", "Three corners of each triangle, counter-clockwise from its front.";
+    MeshSetNormals = "PolygonMesh"."setNormalData"(FloatArray data) -> Void, Writes, "", "x, y, z of the normal at each corner.";
+    MeshSetTextures = "PolygonMesh"."setTextureData"(FloatArray data) -> Void, Writes, "", "u, v at each corner.";
     ThrowablePrintStackTrace = "Throwable"."printStackTrace"() -> Void, Prints, "", "Prints it.";
     FileIsDirectory = "File"."isDirectory"() -> Boolean, Writes, "", "Whether it is a folder.";
     FileIsFile = "File"."isFile"() -> Boolean, Writes, "", "Whether it is a file.";

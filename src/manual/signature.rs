@@ -20,6 +20,7 @@ pub fn type_name(ty: ValueType) -> &'static str {
         ValueType::Class(class) => class.name(),
         ValueType::CharArray => "char[]",
         ValueType::FloatArray => "float[]",
+        ValueType::IntArray => "int[]",
         ValueType::StringArray => "String[]",
         ValueType::FileArray => "File[]",
         ValueType::ObjectArray => "Object[]",
@@ -44,6 +45,9 @@ pub fn field_type_name(ty: FieldType) -> &'static str {
         FieldType::Transformation => "transformation",
         FieldType::Shader => "Shader",
         FieldType::Light => "Light",
+        FieldType::Surface => "BSplineSurface",
+        FieldType::Polygons => "Polygons",
+        FieldType::Floats => "float[]",
         FieldType::Node => "Node",
     }
 }
@@ -110,6 +114,9 @@ pub fn default_value(field: &BuiltinField) -> String {
         | FieldType::Transformation
         | FieldType::Shader
         | FieldType::Light
+        | FieldType::Surface
+        | FieldType::Polygons
+        | FieldType::Floats
         | FieldType::Node => "null".into(),
     }
 }

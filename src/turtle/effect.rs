@@ -101,6 +101,9 @@ pub enum Primitive {
     Light,
     Sky,
     Mesh,
+    Surface,
+    Sweep,
+    Polygons,
 }
 
 impl Primitive {
@@ -108,7 +111,15 @@ impl Primitive {
     pub fn moves(self) -> bool {
         match self {
             Self::Box | Self::Cylinder | Self::Cone | Self::Frustum | Self::Parallelogram => true,
-            Self::Sphere | Self::Plane | Self::Text | Self::Light | Self::Sky | Self::Mesh => false,
+            Self::Sphere
+            | Self::Plane
+            | Self::Text
+            | Self::Light
+            | Self::Sky
+            | Self::Mesh
+            | Self::Surface
+            | Self::Sweep
+            | Self::Polygons => false,
         }
     }
 }

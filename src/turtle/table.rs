@@ -18,6 +18,12 @@ pub enum FieldType {
     Transformation,
     Shader,
     Light,
+    /// A curved surface.
+    Surface,
+    /// Triangles.
+    Polygons,
+    /// An array of `float`.
+    Floats,
     Node,
 }
 
@@ -34,6 +40,9 @@ impl FieldType {
             | Self::Transformation
             | Self::Shader
             | Self::Light
+            | Self::Surface
+            | Self::Polygons
+            | Self::Floats
             | Self::Node => FieldKind::Object,
         }
     }
@@ -760,7 +769,7 @@ const GROUPS: [BuiltinType; 4] = [
     ),
 ];
 
-const SOLIDS: [BuiltinType; 13] = [
+const SOLIDS: [BuiltinType; 17] = [
     ty(
         "Sphere",
         "ShadedNull",
@@ -894,6 +903,83 @@ const SOLIDS: [BuiltinType; 13] = [
         &[&[], &["file"]],
         "Triangles from a `.obj`, `.glb` or `.gltf` file, in metres at the turtle's place; with a shader of its own it takes that \
          for all of it (not in GroIMP). `.glb` and `.gltf` are turned so that their up is the head; a `.obj` stands as it is.",
+    ),
+    base(
+        "CurvedBase",
+        "ShadedNull",
+        Effect::Group,
+        &[
+            field(
+                "error",
+                FieldType::Float,
+                0.0,
+                "m",
+                "How far its triangles may be from it; 0 is a thousandth of its size.",
+            )
+            .rare(),
+            BASE_OPEN,
+            TOP_OPEN,
+            field(
+                "flatness",
+                FieldType::Float,
+                1.0,
+                "",
+                "Kept for models that set it; no effect.",
+            )
+            .rare(),
+            field(
+                "visibleSides",
+                FieldType::Int,
+                2.0,
+                "",
+                "Kept for models that set it; no effect.",
+            )
+            .rare(),
+        ],
+        "Curved surfaces and meshes.",
+    ),
+    ty(
+        "NURBSSurface",
+        "CurvedBase",
+        Effect::Draw(Primitive::Surface),
+        &[field(
+            "surface",
+            FieldType::Surface,
+            0.0,
+            "",
+            "The surface, such as a `BezierSurface` or a `ProfileSweep`.",
+        )],
+        &[&[], &["surface"]],
+        "A curved surface, in metres at the turtle's place; two-sided.",
+    ),
+    ty(
+        "Sweep",
+        "CurvedBase",
+        Effect::Draw(Primitive::Sweep),
+        &[field(
+            "points",
+            FieldType::Floats,
+            0.0,
+            "m",
+            "x, y, z and radius of each point.",
+        )],
+        &[&[], &["points"]],
+        "A round stem along the smooth curve through points, from the first to the last, with a radius at each (not in GroIMP); \
+         its ends are closed, or open with `baseOpen` and `topOpen`.",
+    ),
+    ty(
+        "MeshNode",
+        "CurvedBase",
+        Effect::Draw(Primitive::Polygons),
+        &[field(
+            "polygons",
+            FieldType::Polygons,
+            0.0,
+            "",
+            "The triangles: a `PolygonMesh`.",
+        )],
+        &[&[], &["polygons"]],
+        "Triangles that the model gives, in metres at the turtle's place; two-sided.",
     ),
     ty(
         "TextLabel",

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, buffers, collections, data, files, light, moments, more, new_object,
-    random, shaders, strings, surfaces, vectors,
+    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, moments, more,
+    new_object, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -69,6 +69,17 @@ pub fn constructor(id: C) -> Maker {
         C::ThrowableText => throwable_with_text,
         C::String => strings::make_empty,
         C::StringCopy => strings::make_copy,
+        C::VertexListImpl => freeform::make_points,
+        C::CircleUnit | C::CircleOf => freeform::make_circle,
+        C::RegularHexagon | C::RegularPolygonOf => freeform::make_polygon,
+        C::BSplineOfVertices => freeform::make_spline,
+        C::InterpolatedCurve => freeform::make_through,
+        C::BezierSurface | C::BSplineGrid => freeform::make_grid,
+        C::ProfileSweep => freeform::make_sweep,
+        C::SkinnedSweep => files::make_same,
+        C::SkinnedSurface => freeform::make_skin,
+        C::SurfaceOfRevolution => freeform::make_revolution,
+        C::PolygonMesh => freeform::make_mesh,
     }
 }
 

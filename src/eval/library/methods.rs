@@ -2,9 +2,9 @@
 
 use super::Behaviour::{self, Native};
 use super::{
-    Arguments, Context, arrays, buffers, collections, data, deques, files, getter, keyed, light,
-    moments, more, numbers, ordering, random, setter, shaders, strings, surfaces, system, values,
-    vectors,
+    Arguments, Context, arrays, buffers, collections, data, deques, files, freeform, getter, keyed,
+    light, moments, more, numbers, ordering, random, setter, shaders, strings, surfaces, system,
+    values, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
@@ -307,6 +307,10 @@ pub fn method(id: M) -> Behaviour {
         M::WriterPrintf | M::WriterFormat => files::print_formatted,
         M::ThrowableMessage | M::ThrowableLocalizedMessage => message,
         M::ThrowableSetMessage => set_message,
+        M::MeshSetVertices => freeform::set_vertices,
+        M::MeshSetIndices => freeform::set_indices,
+        M::MeshSetNormals => freeform::set_normals,
+        M::MeshSetTextures => freeform::set_textures,
         M::ThrowablePrintStackTrace => print_stack_trace,
     })
 }

@@ -16,6 +16,7 @@ mod constructors;
 pub mod data;
 pub mod files;
 mod format;
+mod freeform;
 mod functions;
 mod light;
 pub mod moments;
