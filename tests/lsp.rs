@@ -759,3 +759,50 @@ fn a_renaming_that_would_change_the_model_is_refused() {
     let uses = editor.ask("textDocument/references", params);
     assert_eq!(uses.as_array().unwrap().len(), 3, "{uses}");
 }
+
+/// Every name of the outline, nested ones included, with its place.
+fn names(outline: &Value, found: &mut Vec<(String, Value)>) {
+    for symbol in outline.as_array().into_iter().flatten() {
+        let name = symbol["name"].as_str().unwrap().to_owned();
+        found.push((name, symbol["selectionRange"]["start"].clone()));
+        names(&symbol["children"], found);
+    }
+}
+
+#[test]
+fn every_name_of_the_course_can_be_changed_and_the_model_stays_as_it_was() {
+    let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/course");
+    let mut editor = Editor::with(&[("m.rgg", "")]);
+    let mut models: Vec<_> = std::fs::read_dir(course)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    models.retain(|path| path.extension().is_some_and(|suffix| suffix == "rgg"));
+    models.sort();
+    let (mut n_renamed, mut kept) = (0, vec![]);
+    for path in &models {
+        editor.change("m.rgg", &std::fs::read_to_string(path).unwrap());
+        let document = json!({ "uri": editor.uri("m.rgg") });
+        let outline = editor.ask(
+            "textDocument/documentSymbol",
+            json!({ "textDocument": document }),
+        );
+        let mut found = vec![];
+        names(&outline, &mut found);
+        for (name, place) in found {
+            let params =
+                json!({ "textDocument": document, "position": place, "newName": "somethingNew" });
+            let answer = editor.request("textDocument/rename", params);
+            match answer["error"]["message"].as_str() {
+                None => n_renamed += 1,
+                Some(why) => kept.push(format!("{}: {name}: {why}", path.display())),
+            }
+        }
+    }
+    assert!(
+        models.len() > 30 && n_renamed > 100,
+        "{n_renamed} names of {} models",
+        models.len()
+    );
+    assert_eq!(kept, Vec::<String>::new());
+}

@@ -65,6 +65,9 @@ impl Checker<'_> {
             let ty = self.fields[usize::from(type_id.0)]
                 .get(usize::from(field.0))
                 .and_then(|f| f.ty.clone());
+            if matches!(param, ast::ModuleParam::Super(_)) {
+                self.note_field(type_id, *field, &name.name, name.span);
+            }
             params.push(ty.clone().unwrap_or(Type::Object));
             let slot = self.cx.slot(ty.clone().unwrap_or(Type::Object), name.span);
             self.cx.declare(Local {

@@ -35,9 +35,13 @@ pub fn occurrences(
     };
     let is_type = matches!(thing, Thing::Symbol(symbol)
         if matches!(symbol.kind, SymbolKind::Module | SymbolKind::Class));
+    let declared = origin(analysis, declared);
     let name = text_of(analysis, declared)?;
-    let mut found: BTreeSet<Span> = uses_of(analysis, declared);
-    found.insert(declared);
+    let mut found = BTreeSet::from([declared]);
+    let mut open = vec![declared];
+    while let Some(place) = open.pop() {
+        open.extend(uses_of(analysis, place).filter(|used| found.insert(*used)));
+    }
     if is_type {
         found.extend(named(analysis, &name));
     }
@@ -55,12 +59,23 @@ fn text_of(analysis: &Analysis, span: Span) -> Option<String> {
         .map(str::to_owned)
 }
 
-fn uses_of(analysis: &Analysis, declared: Span) -> BTreeSet<Span> {
+/// Where a name is declared first: `super.size` declares a parameter and is a use of the parent's field.
+fn origin(analysis: &Analysis, declared: Span) -> Span {
     let uses = analysis.survey.uses.iter();
-    let of_it = |meaning: &Meaning| matches!(meaning, Meaning::Declared(at) if *at == declared);
-    uses.filter(|(_, meaning)| of_it(meaning))
-        .map(|(span, _)| *span)
-        .collect()
+    let mut others = uses.filter_map(|(span, meaning)| match meaning {
+        Meaning::Declared(at) if *span == declared && *at != declared => Some(*at),
+        _ => None,
+    });
+    others.next().unwrap_or(declared)
+}
+
+/// The places that mean what is declared in this one.
+fn uses_of(analysis: &Analysis, declared: Span) -> impl Iterator<Item = Span> {
+    let uses = analysis.survey.uses.iter();
+    uses.filter_map(move |(span, meaning)| match meaning {
+        Meaning::Declared(at) if *at == declared => Some(*span),
+        _ => None,
+    })
 }
 
 /// The places of a name in code that mean no variable, field or method.
