@@ -15,11 +15,13 @@ use crate::diag::Span;
 use crate::library::{ClassId, FunctionId, constants};
 use crate::manual::signature::builtin_named;
 use crate::manual::words::word_named;
-use lsp_types::{TextEdit, Uri, WorkspaceEdit};
-use std::collections::{BTreeSet, HashMap};
+use lsp_types::TextEdit;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::rc::Rc;
-use std::str::FromStr;
+
+/// Changes of texts, by the address of the file.
+pub type Edits = BTreeMap<String, Vec<TextEdit>>;
 
 /// The word at byte `at` and all places in the model that mean the same, its declaration among them, sorted.
 pub fn occurrences(
@@ -105,19 +107,14 @@ fn named(analysis: &Analysis, name: &str) -> Vec<Span> {
 ///
 /// # Errors
 /// Why it cannot have that name, as a sentence for the user.
-pub fn rename(
-    analysis: &Analysis,
-    file: &FileView,
-    at: usize,
-    new: &str,
-) -> Result<WorkspaceEdit, String> {
+pub fn rename(analysis: &Analysis, file: &FileView, at: usize, new: &str) -> Result<Edits, String> {
     if analysis.found.has_errors() {
         return Err("mend the errors of the model first: a name is safe to change only where all is understood".into());
     }
     let (word, places) =
         occurrences(analysis, file, at).ok_or("this is no name that the model declares")?;
     if file.text[word] == *new {
-        return Ok(WorkspaceEdit::default());
+        return Ok(Edits::new());
     }
     check_name(analysis, new)?;
     let is_same = |span: &Span, file: &FileView| span.file == file.id;
@@ -150,26 +147,20 @@ pub fn rename(
             "with the name `{new}` the model would no longer mean the same; nothing was changed"
         ));
     }
-    let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
+    let mut changes = Edits::new();
     for span in places {
         let Some(file) = analysis.file(span) else {
-            continue;
-        };
-        let Ok(uri) = Uri::from_str(&file.uri) else {
             continue;
         };
         let range = file
             .lines
             .range(&file.text, span.start as usize..span.end as usize);
-        changes.entry(uri).or_default().push(TextEdit {
+        changes.entry(file.uri.clone()).or_default().push(TextEdit {
             range,
             new_text: new.to_owned(),
         });
     }
-    Ok(WorkspaceEdit {
-        changes: Some(changes),
-        ..WorkspaceEdit::default()
-    })
+    Ok(changes)
 }
 
 /// Whether a name can be given: a name at all, and one that means nothing yet.

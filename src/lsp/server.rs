@@ -240,7 +240,7 @@ impl<'w> Server<'w> {
                     Some(renaming::rename(analysis, file, byte, &params.new_name))
                 });
                 match renamed {
-                    Some(Ok(edit)) => answer(&edit),
+                    Some(Ok(edits)) => answer(&json!({ "changes": edits })),
                     Some(Err(why)) => Err(refusal(REQUEST_FAILED, why)),
                     None => Ok(Value::Null),
                 }
