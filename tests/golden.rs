@@ -13,10 +13,6 @@ use understory::syntax::parse;
 /// Models that cannot pass, each with the reason.
 const NOT_PASSING: &[(&str, &str)] = &[
     (
-        "84-acc-closure",
-        "functions as values (tier 3) are refused by name",
-    ),
-    (
         "50-light-directional",
         "light models are not computed during growth",
     ),

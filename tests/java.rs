@@ -434,6 +434,71 @@ fn the_library_answers_as_javas_does() {
     }
 }
 
+/// Functions as values, in XL's own notation.
+const FUNCTIONS: &str = r#"
+module Leaf(float area);
+class Curve { double k; Curve(double k) { this.k = k; } DoubleToDouble times() { return double x => k * x; } }
+double integral(DoubleToDouble f, double a, double b) { double s = 0; for (int i = 0; i < 100; i++) s += f.evaluateDouble(a + (b - a) * (i + 0.5) / 100) * (b - a) / 100; return s; }
+FloatToFloat twice = float t => float t * 2;
+protected void init() {
+	FloatToFloat f = float t => float t * t + 1;
+	println(f.evaluateFloat(3) + " " + twice.evaluateFloat(1.5) + " " + Math.round(100 * integral(double x => x * x, 0, 3)));
+	int n = 3; String s = "n";
+	IntToInt g = int i => i * n; n = 4;
+	println(g.evaluateInt(5) + " " + n + new Curve(2.5).times().evaluateDouble(2));
+	ObjectToObject h = Object o => s + o;
+	println(h.evaluateObject("!"));
+	ObjectToFloat area = Leaf l => l.area;
+	println(area.evaluateFloat(new Leaf(2)));
+	FloatToFloat[] all = {f, twice, float t => -t};
+	for (FloatToFloat one : all) print(one.evaluateFloat(2) + " ");
+	try { area.evaluateFloat("x"); } catch (ClassCastException e) { println("no leaf"); }
+}
+"#;
+
+#[test]
+fn functions_are_values() {
+    let expected = "10.0 3.0 900\n15 45.0\nn!\n2.0\n5.0 4.0 -2.0 no leaf\n";
+    assert_eq!(printed_by(FUNCTIONS).unwrap(), expected);
+    let slips = [
+        (
+            "FloatToFloat f = int i => i;",
+            "expected `FloatToFloat`, found `IntToInt`",
+        ),
+        (
+            "IntToInt f = int i => i; f.evaluateFloat(2);",
+            "has no method `evaluateFloat`",
+        ),
+        (
+            "int n = 0; IntToInt f = int i => n = i;",
+            "`n` cannot be changed",
+        ),
+    ];
+    for (slip, expected) in slips {
+        let fault = printed(slip).expect_err(slip);
+        assert!(fault.contains(expected), "{slip}: {fault}");
+    }
+}
+
+/// Matrices of `javax.vecmath`; the figures were worked out by hand.
+#[test]
+fn matrices_turn_and_move() {
+    let body = r#"
+    Matrix4d m = new Matrix4d(); println(m.m00); m.rotZ(Math.PI / 2); m.setTranslation(new Vector3d(1, 2, 3));
+    Point3d p = new Point3d(1, 0, 0); Vector3d v = new Vector3d(1, 0, 0); m.transform(p); m.transform(v);
+    println(Math.round(p.x) + " " + Math.round(p.y) + " " + Math.round(p.z) + " " + Math.round(v.x) + " " + Math.round(v.y) + " " + m.m03 + m.getElement(2, 3));
+    Matrix4d i = new Matrix4d(m); i.invert(); i.transform(p); println(Math.round(p.x) + " " + Math.round(p.y));
+    Matrix3d t = new Matrix3d(1, 2, 3, 4, 5, 6, 7, 8, 10); println(Math.round(1000 * t.determinant()) + "\n" + t); t.transpose(); t.mul(2); t.m11 += 1; print(t);
+    try { new Matrix4d().invert(); } catch (ArithmeticException e) { println(e.getMessage()); }
+    try { t.getElement(3, 0); } catch (ArrayIndexOutOfBoundsException e) { println("no row"); }"#;
+    let expected = "0.0\n1 3 3 0 1 1.03.0\n1 0\n-3000\n1.0, 2.0, 3.0\n4.0, 5.0, 6.0\n7.0, 8.0, 10.0\n\n2.0, 8.0, 14.0\n4.0, 11.0, 16.0\n6.0, 12.0, 20.0\n\
+                    the matrix has no inverse\nno row\n";
+    assert_eq!(printed(body).unwrap(), expected);
+    let placed = "module A; protected void init() { [ Axiom ==> Translate(1, 2, 3) RU(90) A; ] derive(); A a = first((* A *)); \
+        Point3d p = new Point3d(0, 0, 1); transformation(a).transform(p); println(Math.round(p.x) + \" \" + Math.round(p.y) + \" \" + Math.round(p.z) + transformation(a).m13); }";
+    assert_eq!(printed_by(placed).unwrap(), "2 2 32.0\n");
+}
+
 /// Methods that Java calls by itself, enumerations, interfaces with constants, and the model as an object.
 const OWN_METHODS: &str = r#"
 enum Stage { SEED, LEAF(2.5), DEAD(0); double w; Stage() { w = 9; } Stage(double w) { this.w = w; } double twice() { return 2 * w; } }

@@ -14,9 +14,10 @@ impl Checker<'_> {
     pub(super) fn bodies(&mut self) -> Model {
         let mut statics = self.statics();
         let mut modules = self.modules();
-        let methods: Vec<Method> = (0..self.methods.len())
+        let mut methods: Vec<Method> = (0..self.methods.len())
             .map(|index| self.method(MethodId(index as u32)))
             .collect();
+        methods.append(&mut self.closures);
         self.decide_purity(&mut modules);
         for (index, variable) in statics.iter_mut().enumerate() {
             variable.is_constant = !self.assigned.contains(&StaticId(index as u32));

@@ -253,6 +253,9 @@ impl Checker<'_> {
             (self.value(object), self.exprs(args))
         };
         let (object, args) = (object?, args?);
+        if object.ty.class() == Some(ClassId::Function) && name.starts_with("evaluate") {
+            return self.evaluate(object, member, args, span);
+        }
         let overloads = self.object_overloads(&object.ty, name);
         if overloads.is_empty() {
             self.report_unknown_method(&object.ty, member);

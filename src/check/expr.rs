@@ -59,10 +59,7 @@ impl Checker<'_> {
             ast::ExprKind::Range(from, to) => self.range(from, to, span),
             ast::ExprKind::Query(pattern) => self.query(pattern, span),
             ast::ExprKind::Comma(all) => self.comma(all, span),
-            ast::ExprKind::Lambda(..) => {
-                self.refuse_closure(span);
-                None
-            }
+            ast::ExprKind::Lambda(param, value) => self.closure(param, value, span),
             ast::ExprKind::Broken => None,
         }
     }

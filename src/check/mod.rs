@@ -12,6 +12,7 @@ mod assign;
 mod body;
 mod call;
 mod class;
+mod closure;
 mod coerce;
 mod constant;
 mod construct;
@@ -131,6 +132,8 @@ struct Checker<'a> {
     assigned: BTreeSet<StaticId>,
     /// Names of types that were refused where they are declared; their uses are passed over.
     refused: HashSet<String>,
+    /// Functions as values; as methods they stand behind those that were declared.
+    closures: Vec<model::Method>,
     /// Type parameters of the model's own classes; they stand for any object.
     type_params: HashSet<String>,
     /// Where nodes of each type are made.
@@ -169,6 +172,7 @@ impl<'a> Checker<'a> {
             static_values: HashMap::new(),
             assigned: BTreeSet::new(),
             refused: HashSet::new(),
+            closures: vec![],
             type_params: classes
                 .iter()
                 .flat_map(|class| class.type_params.iter().cloned())

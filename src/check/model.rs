@@ -399,6 +399,8 @@ pub enum ExprKind {
     },
     /// The root node, `^`.
     Root,
+    /// A function as a value: a method, and what stands before its argument (its `this` first, if it has one).
+    Function(MethodId, Vec<Expr>),
     /// `(a, b)`: all evaluated, the last is the value.
     Comma(Vec<Expr>),
 }

@@ -105,7 +105,10 @@ impl Checker<'_> {
                 (None, Some(&class)) => Type::Instance(class),
                 (None, None) if self.refused.contains(name) => return None,
                 (None, None) if self.type_params.contains(name) => Type::Object,
-                (None, None) => Type::Class(ClassId::named(name)?),
+                (None, None) => match super::closure::named(name) {
+                    Some(function) => function,
+                    None => Type::Class(ClassId::named(name)?),
+                },
             },
         })
     }

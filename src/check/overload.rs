@@ -122,7 +122,11 @@ impl Checker<'_> {
             && first
                 .iter()
                 .zip(args)
-                .all(|(param, arg)| self.param_fit(param, &arg.ty).is_some())
+                .all(|(param, arg)| match self.param_fit(param, &arg.ty) {
+                    // A value is not made a text where another overload may take it as it is.
+                    Some(Fit::Text) => matches!(param, Wanted::Text),
+                    fit => fit.is_some(),
+                })
             && args[first.len()..]
                 .iter()
                 .all(|arg| self.fit(&arg.ty, element).is_some())

@@ -9,13 +9,29 @@ use crate::syntax::ast;
 const TYPES: &[(&[&str], &str)] = &[
     (
         &[
-            "FloatToFloat",
-            "DoubleToDouble",
-            "IntToInt",
-            "ObjectToObject",
             "FunctionRef",
+            "BiFunction",
+            "Supplier",
+            "Consumer",
+            "Predicate",
         ],
-        "write a method and call it",
+        "write a method, or a function value of one parameter: `FloatToFloat f = float t => float t * t;`",
+    ),
+    (
+        &["Vector2d", "Point2d", "Tuple2d", "Vector2f", "Point2f"],
+        "write `Vector3d` or `Point3d` with z = 0",
+    ),
+    (
+        &[
+            "Calendar",
+            "GregorianCalendar",
+            "LocalDate",
+            "LocalTime",
+            "LocalDateTime",
+            "Instant",
+            "Duration",
+        ],
+        "growth knows no clock, so that a run can be repeated: count the days in a variable",
     ),
     (
         &["Point3f", "Vector3f", "Tuple3f", "Color3f", "Point4d"],
@@ -23,15 +39,15 @@ const TYPES: &[(&[&str], &str)] = &[
     ),
     (
         &[
-            "Matrix3d",
-            "Matrix4d",
-            "Matrix34d",
-            "TMatrix4d",
+            "Matrix3f",
+            "Matrix4f",
+            "GMatrix",
             "AxisAngle4d",
             "Quat4d",
             "Math2",
+            "VMAtrix",
         ],
-        "write `Translate`, `Rotate` and `Scale` nodes",
+        "write `Translate`, `Rotate` and `Scale` nodes, or turn with a `Matrix4d`",
     ),
     (
         &["Lognormal", "Normal", "Uniform", "Exponential", "Weibull"],
@@ -219,10 +235,6 @@ const FUNCTIONS: &[(&[&str], &str)] = &[
         "POV-Ray is not called: render with `understory render`",
     ),
     (
-        &["transformation"],
-        "use `location`, `direction` and `endlocation`",
-    ),
-    (
         &[
             "forName",
             "newInstance",
@@ -319,15 +331,5 @@ impl Checker<'_> {
         let hint = format!("write `void {name}(…)` if it gives no value");
         self.report(Diagnostic::error("no-result-type", method.name.span, message).hint(hint));
         self.refused.insert(name.clone());
-    }
-
-    /// `float t => …`
-    pub(super) fn refuse_closure(&mut self, span: Span) {
-        let fault = Diagnostic::error(
-            "unsupported-closure",
-            span,
-            "functions as values are not supported",
-        );
-        self.report(fault.hint("write a method and call it"));
     }
 }

@@ -117,6 +117,7 @@ impl Checker<'_> {
                 library.is_some_and(|class| class.is_a(*b)) || self.implements_library(*a, *b)
             }
             (Type::Array(a), Type::Array(b)) => a == b || is_reference(a) && self.is_subtype(a, b),
+            (Type::Generic(ClassId::Function, a), Type::Generic(ClassId::Function, b)) => a == b,
             // Of types of which one does not say what it holds, only the classes count.
             (Type::Generic(a, of_a), Type::Generic(b, of_b)) => {
                 let is_open = |ty: &Type| *ty == Type::Object;
@@ -183,7 +184,8 @@ impl Checker<'_> {
             Type::String => "String".into(),
             Type::Node(id) | Type::Instance(id) => self.types[*id].name.to_string(),
             Type::Class(class) => class.name().into(),
-            Type::Generic(class, args) => format!("{}<{}>", class.name(), self.type_names(args)),
+            Type::Generic(class, args) => super::closure::name_of(*class, args)
+                .unwrap_or_else(|| format!("{}<{}>", class.name(), self.type_names(args))),
             Type::Array(element) => format!("{}[]", self.type_name(element)),
             Type::Object => "Object".into(),
         }

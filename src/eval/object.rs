@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::decimal::{java_double_to_string, java_float_to_string};
 use super::freeform::Freeform;
@@ -86,6 +86,8 @@ pub enum Data {
     Pattern(Box<str>),
     /// A moment, in milliseconds since 1970.
     Moment(i64),
+    /// A matrix.
+    Matrix(Box<DMat4>),
     /// Nothing that can be told.
     Opaque,
 }
@@ -256,6 +258,7 @@ impl Object {
             (Data::Color(a), Data::Color(b)) => a == b,
             (Data::Shader(a), Data::Shader(b)) => a == b,
             (Data::Moment(a), Data::Moment(b)) => a == b,
+            (Data::Matrix(a), Data::Matrix(b)) => a == b,
             (Data::Map(a), Data::Map(b)) | (Data::Set(a), Data::Set(b)) => a.holds_same(&b, depth),
             (Data::List(a), Data::List(b)) => {
                 let mut pairs = a.values.iter().zip(&b.values);
@@ -365,6 +368,10 @@ impl Object {
                 entry.0.append_nested(out, depth);
                 out.push('=');
                 entry.1.append_nested(out, depth);
+            }
+            Data::Matrix(matrix) => {
+                let is_small = self.class.is_a(ClassId::Matrix3d);
+                out.push_str(&super::library::matrices::text_of(&matrix, is_small));
             }
             Data::Moment(millis) => out.push_str(&super::library::moments::text_of(millis)),
             Data::Reversed(_) | Data::Function(..) | Data::Pattern(_) | Data::Opaque => {

@@ -38,6 +38,11 @@ classes! {
     Point3d: Tuple3d, "A point.";
     Vector3d: Tuple3d, "A vector.";
     Spectrum3d: Vector3d, "Power or colour in red, green and blue, as x, y, z.";
+    Matrix, "A square matrix of doubles; element `m01` stands in row 0, column 1.";
+    Matrix3d: Matrix, "3 × 3 doubles.";
+    Matrix4d: Matrix, "4 × 4 doubles: turns, scales and moves points.";
+    Matrix34d: Matrix4d, "A place: turns, scales and moves points.";
+    TMatrix4d: Matrix4d, "A place: turns, scales and moves points.";
     ChannelMap, "A value over a surface: a colour or a gray tone.";
     RGBColor: ChannelMap, "A colour, linear red, green, blue in 0..=1.";
     Graytone: ChannelMap, "A gray tone.";

@@ -17,6 +17,11 @@ signatures! {
     Tuple = "Tuple3d"."new"() -> Void, Pure, "", "All zero.";
     TupleOf = "Tuple3d"."new"(Double x, Double y, Double z) -> Void, Pure, "", "From x, y, z.";
     TupleCopy = "Tuple3d"."new"(Class(ClassId::Tuple3d) other) -> Void, Pure, "", "A copy.";
+    Matrix = "Matrix"."new"() -> Void, Pure, "", "All zero.";
+    MatrixCopy = "Matrix"."new"(Class(ClassId::Matrix) matrix) -> Void, Pure, "", "A copy.";
+    Matrix3d = "Matrix3d"."new"() -> Void, Pure, "", "All zero.";
+    Matrix3dCopy = "Matrix3d"."new"(Class(ClassId::Matrix) matrix) -> Void, Pure, "", "A copy.";
+    Matrix3dOf = "Matrix3d"."new"(Double m00, Double m01, Double m02, Double m10, Double m11, Double m12, Double m20, Double m21, Double m22) -> Void, Pure, "", "Row by row.";
     RgbColor = "RGBColor"."new"(Float red, Float green, Float blue) -> Void, Pure, "0..=1", "From red, green, blue.";
     Graytone = "Graytone"."new"(Float value) -> Void, Pure, "0..=1", "A gray.";
     Shader = "RGBAShader"."new"() -> Void, Pure, "", "Half gray, opaque.";
@@ -125,6 +130,7 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
     if [
         ClassId::List,
         ClassId::Queue,
+        ClassId::Matrix,
         ClassId::Deque,
         ClassId::Collection,
         ClassId::Map,

@@ -40,6 +40,7 @@ signatures! {
     Endlocation = ""."endlocation"(Node node) -> POINT, Graph, "m", "Origin of the local coordinates of the node's children.";
     Direction = ""."direction"(Node node) -> VECTOR, Graph, "", "Direction of growth (local z) at the node.";
     Enddirection = ""."enddirection"(Node node) -> VECTOR, Graph, "", "Direction of growth at the node's children.";
+    Transformation = ""."transformation"(Node node) -> Class(ClassId::Matrix34d), Graph, "m", "What makes the node's local coordinates those of the world.";
     DistanceNodes = ""."distance"(Node a, Node b) -> Double, Graph, "m", "Distance between the origins of two nodes.";
     DistanceSquaredNodes = ""."distanceSquared"(Node a, Node b) -> Double, Graph, "m²", "Squared distance between the origins of two nodes.";
     DistancePoints = ""."distance"(TUPLE a, TUPLE b) -> Double, Pure, "m", "Distance between two points.";

@@ -9,7 +9,7 @@ use super::ValueType::{
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
 
-const FUNCTION: ValueType = Class(ClassId::Function);
+const MATRIX: ValueType = Class(ClassId::Matrix);
 const TUPLE: ValueType = Class(ClassId::Tuple3d);
 const VECTOR: ValueType = Class(ClassId::Vector3d);
 const POINT: ValueType = Class(ClassId::Point3d);
@@ -113,6 +113,63 @@ signatures! {
     VectorOver = "Vector3d"."/"(Double value) -> VECTOR, Pure, "", "Fraction.";
     SpectrumIntegrate = "Spectrum3d"."integrate"() -> Double, Pure, "W", "Sum over red, green and blue.";
 
+    Matrix00 = "Matrix"."m00"() -> Double, Pure, "", "Element in row 0, column 0.";
+    MatrixSet00 = "Matrix"."m00="(Double value) -> Void, Writes, "", "Sets the element in row 0, column 0.";
+    Matrix01 = "Matrix"."m01"() -> Double, Pure, "", "Element in row 0, column 1.";
+    MatrixSet01 = "Matrix"."m01="(Double value) -> Void, Writes, "", "Sets the element in row 0, column 1.";
+    Matrix02 = "Matrix"."m02"() -> Double, Pure, "", "Element in row 0, column 2.";
+    MatrixSet02 = "Matrix"."m02="(Double value) -> Void, Writes, "", "Sets the element in row 0, column 2.";
+    Matrix03 = "Matrix"."m03"() -> Double, Pure, "", "Element in row 0, column 3.";
+    MatrixSet03 = "Matrix"."m03="(Double value) -> Void, Writes, "", "Sets the element in row 0, column 3.";
+    Matrix10 = "Matrix"."m10"() -> Double, Pure, "", "Element in row 1, column 0.";
+    MatrixSet10 = "Matrix"."m10="(Double value) -> Void, Writes, "", "Sets the element in row 1, column 0.";
+    Matrix11 = "Matrix"."m11"() -> Double, Pure, "", "Element in row 1, column 1.";
+    MatrixSet11 = "Matrix"."m11="(Double value) -> Void, Writes, "", "Sets the element in row 1, column 1.";
+    Matrix12 = "Matrix"."m12"() -> Double, Pure, "", "Element in row 1, column 2.";
+    MatrixSet12 = "Matrix"."m12="(Double value) -> Void, Writes, "", "Sets the element in row 1, column 2.";
+    Matrix13 = "Matrix"."m13"() -> Double, Pure, "", "Element in row 1, column 3.";
+    MatrixSet13 = "Matrix"."m13="(Double value) -> Void, Writes, "", "Sets the element in row 1, column 3.";
+    Matrix20 = "Matrix"."m20"() -> Double, Pure, "", "Element in row 2, column 0.";
+    MatrixSet20 = "Matrix"."m20="(Double value) -> Void, Writes, "", "Sets the element in row 2, column 0.";
+    Matrix21 = "Matrix"."m21"() -> Double, Pure, "", "Element in row 2, column 1.";
+    MatrixSet21 = "Matrix"."m21="(Double value) -> Void, Writes, "", "Sets the element in row 2, column 1.";
+    Matrix22 = "Matrix"."m22"() -> Double, Pure, "", "Element in row 2, column 2.";
+    MatrixSet22 = "Matrix"."m22="(Double value) -> Void, Writes, "", "Sets the element in row 2, column 2.";
+    Matrix23 = "Matrix"."m23"() -> Double, Pure, "", "Element in row 2, column 3.";
+    MatrixSet23 = "Matrix"."m23="(Double value) -> Void, Writes, "", "Sets the element in row 2, column 3.";
+    Matrix30 = "Matrix"."m30"() -> Double, Pure, "", "Element in row 3, column 0.";
+    MatrixSet30 = "Matrix"."m30="(Double value) -> Void, Writes, "", "Sets the element in row 3, column 0.";
+    Matrix31 = "Matrix"."m31"() -> Double, Pure, "", "Element in row 3, column 1.";
+    MatrixSet31 = "Matrix"."m31="(Double value) -> Void, Writes, "", "Sets the element in row 3, column 1.";
+    Matrix32 = "Matrix"."m32"() -> Double, Pure, "", "Element in row 3, column 2.";
+    MatrixSet32 = "Matrix"."m32="(Double value) -> Void, Writes, "", "Sets the element in row 3, column 2.";
+    Matrix33 = "Matrix"."m33"() -> Double, Pure, "", "Element in row 3, column 3.";
+    MatrixSet33 = "Matrix"."m33="(Double value) -> Void, Writes, "", "Sets the element in row 3, column 3.";
+    MatrixSetIdentity = "Matrix"."setIdentity"() -> Void, Writes, "", "Becomes the identity.";
+    MatrixSetZero = "Matrix"."setZero"() -> Void, Writes, "", "Becomes zero.";
+    MatrixSetMatrix = "Matrix"."set"(MATRIX matrix) -> Void, Writes, "", "Copies.";
+    MatrixSetScale = "Matrix"."set"(Double scale) -> Void, Writes, "", "Becomes a scaling.";
+    MatrixSetMove = "Matrix4d"."set"(TUPLE move) -> Void, Writes, "", "Becomes a move.";
+    MatrixSetTranslation = "Matrix4d"."setTranslation"(TUPLE move) -> Void, Writes, "", "Sets where it moves to; the rest stays.";
+    MatrixGetTranslation = "Matrix4d"."get"(TUPLE result) -> Void, Writes, "", "The vector becomes what it moves by.";
+    MatrixRotX = "Matrix"."rotX"(Double angle) -> Void, Writes, "radians", "Becomes a rotation about x.";
+    MatrixRotY = "Matrix"."rotY"(Double angle) -> Void, Writes, "radians", "Becomes a rotation about y.";
+    MatrixRotZ = "Matrix"."rotZ"(Double angle) -> Void, Writes, "radians", "Becomes a rotation about z.";
+    MatrixMul = "Matrix"."mul"(MATRIX matrix) -> Void, Writes, "", "Becomes its product with another.";
+    MatrixMulOf = "Matrix"."mul"(MATRIX a, MATRIX b) -> Void, Writes, "", "Becomes the product.";
+    MatrixMulNumber = "Matrix"."mul"(Double factor) -> Void, Writes, "", "Multiplies all elements.";
+    MatrixAdd = "Matrix"."add"(MATRIX matrix) -> Void, Writes, "", "Adds to it.";
+    MatrixSub = "Matrix"."sub"(MATRIX matrix) -> Void, Writes, "", "Subtracts from it.";
+    MatrixTranspose = "Matrix"."transpose"() -> Void, Writes, "", "Exchanges rows and columns.";
+    MatrixTransposeOf = "Matrix"."transpose"(MATRIX matrix) -> Void, Writes, "", "Becomes another with rows and columns exchanged.";
+    MatrixInvert = "Matrix"."invert"() -> Void, Writes, "", "Becomes its inverse.";
+    MatrixInvertOf = "Matrix"."invert"(MATRIX matrix) -> Void, Writes, "", "Becomes the inverse of another.";
+    MatrixDeterminant = "Matrix"."determinant"() -> Double, Pure, "", "Its determinant.";
+    MatrixTransform = "Matrix"."transform"(TUPLE tuple) -> Void, Writes, "", "Turns and scales a vector; a point is moved too.";
+    MatrixTransformInto = "Matrix"."transform"(TUPLE tuple, TUPLE result) -> Void, Writes, "", "The second becomes the first turned, scaled and, if it is a point, moved.";
+    MatrixGetElement = "Matrix"."getElement"(Int row, Int column) -> Double, Pure, "", "An element.";
+    MatrixSetElement = "Matrix"."setElement"(Int row, Int column, Double value) -> Void, Writes, "", "Sets an element.";
+
     ShaderAverageColor = "Shader"."getAverageColor"() -> Int, Pure, "", "Colour as `0xAARRGGBB`.";
     ShaderRed = "RGBAShader"."x"() -> Float, Pure, "0..=1", "Red.";
     ShaderGreen = "RGBAShader"."y"() -> Float, Pure, "0..=1", "Green.";
@@ -187,7 +244,6 @@ signatures! {
     CollectionAddAll = "Collection"."addAll"(COLLECTION values) -> Boolean, Writes, "", "Adds all; whether anything changed.";
     CollectionRemoveAll = "Collection"."removeAll"(COLLECTION values) -> Boolean, Writes, "", "Removes all that are in another; whether anything changed.";
     CollectionRetainAll = "Collection"."retainAll"(COLLECTION values) -> Boolean, Writes, "", "Removes all that are not in another; whether anything changed.";
-    CollectionForEach = "Collection"."forEach"(FUNCTION function) -> Void, Writes, "", "Calls a function with each element.";
     ListInsertAll = "List"."addAll"(Int index, COLLECTION values) -> Boolean, Writes, "", "Inserts all at an index.";
     ListLastIndexOf = "List"."lastIndexOf"(Object value) -> Int, Pure, "", "Index of the last equal element, -1 if none.";
     ListSubList = "List"."subList"(Int from, Int to) -> Same, Pure, "", "A copy of the elements from an index up to another.";
@@ -407,6 +463,22 @@ static FIELDS: &[(ClassId, MethodId, MethodId)] = &[
     (ClassId::Tuple3d, MethodId::TupleX, MethodId::TupleSetX),
     (ClassId::Tuple3d, MethodId::TupleY, MethodId::TupleSetY),
     (ClassId::Tuple3d, MethodId::TupleZ, MethodId::TupleSetZ),
+    (ClassId::Matrix, MethodId::Matrix00, MethodId::MatrixSet00),
+    (ClassId::Matrix, MethodId::Matrix01, MethodId::MatrixSet01),
+    (ClassId::Matrix, MethodId::Matrix02, MethodId::MatrixSet02),
+    (ClassId::Matrix, MethodId::Matrix03, MethodId::MatrixSet03),
+    (ClassId::Matrix, MethodId::Matrix10, MethodId::MatrixSet10),
+    (ClassId::Matrix, MethodId::Matrix11, MethodId::MatrixSet11),
+    (ClassId::Matrix, MethodId::Matrix12, MethodId::MatrixSet12),
+    (ClassId::Matrix, MethodId::Matrix13, MethodId::MatrixSet13),
+    (ClassId::Matrix, MethodId::Matrix20, MethodId::MatrixSet20),
+    (ClassId::Matrix, MethodId::Matrix21, MethodId::MatrixSet21),
+    (ClassId::Matrix, MethodId::Matrix22, MethodId::MatrixSet22),
+    (ClassId::Matrix, MethodId::Matrix23, MethodId::MatrixSet23),
+    (ClassId::Matrix, MethodId::Matrix30, MethodId::MatrixSet30),
+    (ClassId::Matrix, MethodId::Matrix31, MethodId::MatrixSet31),
+    (ClassId::Matrix, MethodId::Matrix32, MethodId::MatrixSet32),
+    (ClassId::Matrix, MethodId::Matrix33, MethodId::MatrixSet33),
     (
         ClassId::RGBAShader,
         MethodId::ShaderRed,

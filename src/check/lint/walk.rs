@@ -219,6 +219,7 @@ pub(super) fn expr(e: &Expr, visitor: &mut impl Visitor) {
         | ExprKind::NewArray(args)
         | ExprKind::ArrayLiteral(args)
         | ExprKind::Concat(args)
+        | ExprKind::Function(_, args)
         | ExprKind::Comma(args) => all(args, visitor),
         ExprKind::LibraryMethod(_, object, args) => {
             expr(object, visitor);

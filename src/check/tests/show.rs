@@ -180,6 +180,9 @@ impl Show<'_> {
                 )
             }
             ExprKind::Root => "^".into(),
+            ExprKind::Function(method, captured) => {
+                format!("function({}, {})", method.0, self.all(captured))
+            }
             ExprKind::Comma(all) => format!("comma({})", self.all(all)),
         }
     }

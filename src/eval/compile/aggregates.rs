@@ -9,6 +9,7 @@ use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::array::{Array, Elements};
 use crate::eval::code::{Code, FromCode, Source};
+use crate::eval::machine::Machine;
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
@@ -72,6 +73,11 @@ impl Scope<'_> {
                 m.spend_matches(n, span)?;
                 Ok(n as i64)
             })));
+        }
+        if let (Aggregate::First | Aggregate::Empty | Aggregate::Exist, Type::Node(_)) =
+            (aggregate, ty)
+        {
+            return first_node(aggregate, sequence);
         }
         let Sequence::Map { source, slot, body } = sequence else {
             return None;
@@ -308,6 +314,21 @@ fn all_nodes(sequence: &Sequence) -> Option<(TypeId, Span)> {
     };
     let is_free = node.args.is_empty() && pattern.edges.is_empty() && pattern.conditions.is_empty();
     is_free.then_some((ty, pattern.span))
+}
+
+/// The first of all nodes of a type, or whether there is one: the others are not looked at.
+fn first_node(aggregate: Aggregate, sequence: &Sequence) -> Option<Code> {
+    let (ty, span) = all_nodes(sequence)?;
+    let first = Source::code(move |_, m: &mut Machine| {
+        let first = m.graph.extent(ty).next();
+        m.spend_matches(1, span)?;
+        Ok(first)
+    });
+    Some(match aggregate {
+        Aggregate::First => Code::Node(first),
+        Aggregate::Empty => Code::Boolean(first.map(|node: Option<NodeId>| node.is_none())),
+        _ => Code::Boolean(first.map(|node: Option<NodeId>| node.is_some())),
+    })
 }
 
 /// A field of all nodes of a type.

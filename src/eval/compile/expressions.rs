@@ -104,6 +104,7 @@ impl Scope<'_> {
                 key,
             } => self.select_where(*selection, sequence, *slot, key, &e.ty),
             ExprKind::Root => Code::Node(Source::code(|_, m| Ok(Some(m.graph.root())))),
+            ExprKind::Function(method, captured) => self.function_value(*method, captured),
             ExprKind::Comma(exprs) => self.comma(exprs),
             // `expr` has dealt with the rest.
             _ => Code::void(|_, _| Ok(())),

@@ -1,13 +1,16 @@
 //! Calls of the library.
 
+use std::sync::Arc;
+
 use super::Scope;
 use super::places::with_kind;
-use crate::check::model::{Expr, Type};
+use crate::check::model::{Expr, MethodId as MethodOfModel, Type};
 use crate::diag::Span;
 use crate::eval::access::Access;
 use crate::eval::code::{Code, Source};
 use crate::eval::library::{Behaviour, Context, Maker, Native, constructor, function, method};
 use crate::eval::machine::Machine;
+use crate::eval::object::{Data, Object};
 use crate::eval::program::Program;
 use crate::eval::random::JavaRandom;
 use crate::eval::trap::Trap;
@@ -85,6 +88,17 @@ impl Scope<'_> {
                     args,
                 )
             })
+        }))
+    }
+
+    /// A function as a value, with what its variables hold now.
+    pub(super) fn function_value(&self, method: MethodOfModel, captured: &[Expr]) -> Code {
+        let captured = self.values(captured);
+        Code::Value(Source::code(move |program, machine| {
+            let values = captured.iter().map(|value| value.get(program, machine));
+            let values = values.collect::<Result<Vec<Value>, Trap>>()?;
+            let function = Object::new(ClassId::Function, Data::Function(method, values));
+            Ok(Value::Object(Arc::new(function)))
         }))
     }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, moments, more,
-    new_object, random, shaders, strings, surfaces, vectors,
+    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, matrices,
+    moments, more, new_object, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -18,6 +18,9 @@ pub fn constructor(id: C) -> Maker {
         C::Tuple => vectors::make_zero,
         C::TupleOf => vectors::make,
         C::TupleCopy => vectors::make_copy,
+        C::Matrix | C::Matrix3d => matrices::make,
+        C::MatrixCopy | C::Matrix3dCopy => matrices::make_copy,
+        C::Matrix3dOf => matrices::make_rows,
         C::RgbColor => shaders::make_color,
         C::Graytone => shaders::make_graytone,
         C::Shader => shaders::make_gray,

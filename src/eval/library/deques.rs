@@ -156,11 +156,3 @@ pub(super) fn search(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap
         place.and_then(|at| i32::try_from(at).ok()).unwrap_or(-1),
     ))
 }
-
-/// `collection.forEach(function)`
-pub(super) fn for_each(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
-    for value in elements(cx, args, 0)? {
-        super::values::evaluate(cx, &[args.at(1).clone(), value])?;
-    }
-    Ok(Value::Null)
-}

@@ -34,6 +34,7 @@ pub fn function(id: F) -> Behaviour {
         F::Endlocation => Native(places::end_location),
         F::Direction => Native(places::direction),
         F::Enddirection => Native(places::end_direction),
+        F::Transformation => Native(places::transformation),
         F::DistanceNodes => Native(places::distance),
         F::DistanceSquaredNodes => Native(places::distance_squared),
         F::DistancePoints => Native(places::distance_of_points),

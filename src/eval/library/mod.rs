@@ -20,6 +20,7 @@ mod freeform;
 mod functions;
 mod light;
 pub mod moments;
+pub mod matrices;
 mod methods;
 pub mod more;
 mod numbers;
@@ -93,6 +94,22 @@ pub fn getter(id: MethodId) -> Getter {
         MethodId::TupleX => vectors::x,
         MethodId::TupleY => vectors::y,
         MethodId::TupleZ => vectors::z,
+        MethodId::Matrix00 => matrices::element::<0, 0>,
+        MethodId::Matrix01 => matrices::element::<0, 1>,
+        MethodId::Matrix02 => matrices::element::<0, 2>,
+        MethodId::Matrix03 => matrices::element::<0, 3>,
+        MethodId::Matrix10 => matrices::element::<1, 0>,
+        MethodId::Matrix11 => matrices::element::<1, 1>,
+        MethodId::Matrix12 => matrices::element::<1, 2>,
+        MethodId::Matrix13 => matrices::element::<1, 3>,
+        MethodId::Matrix20 => matrices::element::<2, 0>,
+        MethodId::Matrix21 => matrices::element::<2, 1>,
+        MethodId::Matrix22 => matrices::element::<2, 2>,
+        MethodId::Matrix23 => matrices::element::<2, 3>,
+        MethodId::Matrix30 => matrices::element::<3, 0>,
+        MethodId::Matrix31 => matrices::element::<3, 1>,
+        MethodId::Matrix32 => matrices::element::<3, 2>,
+        MethodId::Matrix33 => matrices::element::<3, 3>,
         MethodId::ShaderRed => shaders::red,
         MethodId::ShaderGreen => shaders::green,
         MethodId::ShaderBlue => shaders::blue,
@@ -107,6 +124,22 @@ pub fn setter(id: MethodId) -> Setter {
         MethodId::TupleSetX => vectors::set_x,
         MethodId::TupleSetY => vectors::set_y,
         MethodId::TupleSetZ => vectors::set_z,
+        MethodId::MatrixSet00 => matrices::set_element::<0, 0>,
+        MethodId::MatrixSet01 => matrices::set_element::<0, 1>,
+        MethodId::MatrixSet02 => matrices::set_element::<0, 2>,
+        MethodId::MatrixSet03 => matrices::set_element::<0, 3>,
+        MethodId::MatrixSet10 => matrices::set_element::<1, 0>,
+        MethodId::MatrixSet11 => matrices::set_element::<1, 1>,
+        MethodId::MatrixSet12 => matrices::set_element::<1, 2>,
+        MethodId::MatrixSet13 => matrices::set_element::<1, 3>,
+        MethodId::MatrixSet20 => matrices::set_element::<2, 0>,
+        MethodId::MatrixSet21 => matrices::set_element::<2, 1>,
+        MethodId::MatrixSet22 => matrices::set_element::<2, 2>,
+        MethodId::MatrixSet23 => matrices::set_element::<2, 3>,
+        MethodId::MatrixSet30 => matrices::set_element::<3, 0>,
+        MethodId::MatrixSet31 => matrices::set_element::<3, 1>,
+        MethodId::MatrixSet32 => matrices::set_element::<3, 2>,
+        MethodId::MatrixSet33 => matrices::set_element::<3, 3>,
         MethodId::ShaderSetRed => shaders::set_red,
         MethodId::ShaderSetGreen => shaders::set_green,
         MethodId::ShaderSetBlue => shaders::set_blue,

@@ -51,6 +51,10 @@ pub(super) fn end_location(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
     Ok(point(state_after(cx, args)?.position()))
 }
 
+pub(super) fn transformation(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    Ok(super::matrices::of_place(state(cx, args, 0)?.1.transform))
+}
+
 pub(super) fn direction(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     Ok(vector(state(cx, args, 0)?.1.head()))
 }
