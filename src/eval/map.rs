@@ -80,7 +80,7 @@ impl JavaMap {
             }
             Order::Inserted => {}
             Order::Natural => {
-                all.sort_by(|a, b| natural(&a.entry.0, &b.entry.0).unwrap_or(Ordering::Equal))
+                all.sort_by(|a, b| natural(&a.entry.0, &b.entry.0).unwrap_or(Ordering::Equal));
             }
         }
         all.into_iter().map(|slot| &slot.entry).collect()

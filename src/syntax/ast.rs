@@ -220,6 +220,10 @@ pub struct Stmt {
 
 /// What a statement is.
 #[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "the heads of `for` are large and rare, and bodies are short"
+)]
 pub enum StmtKind {
     /// `;`
     Empty,

@@ -223,7 +223,7 @@ impl<'p> Decimal<'p> {
         let mut out = String::new();
         for (i, digit) in digits.chars().enumerate() {
             let n_left = digits.len() - i;
-            if i > 0 && self.group > 0 && n_left % self.group == 0 {
+            if i > 0 && self.group > 0 && n_left.is_multiple_of(self.group) {
                 out.push(',');
             }
             out.push(digit);

@@ -176,7 +176,7 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::type_args => {
-                    class.type_params = kids(kid).map(|p| self.type_param(p)).collect()
+                    class.type_params = kids(kid).map(|p| self.type_param(p)).collect();
                 }
                 // An interface can extend several.
                 Rule::class_parents => {
