@@ -459,46 +459,20 @@ pub fn field_named(class: ClassId, name: &str) -> Option<LibraryField> {
 }
 
 /// Class, getter, setter of every public field; the getter's name is the field's.
+#[rustfmt::skip]
 static FIELDS: &[(ClassId, MethodId, MethodId)] = &[
-    (ClassId::Tuple3d, MethodId::TupleX, MethodId::TupleSetX),
-    (ClassId::Tuple3d, MethodId::TupleY, MethodId::TupleSetY),
-    (ClassId::Tuple3d, MethodId::TupleZ, MethodId::TupleSetZ),
-    (ClassId::Matrix, MethodId::Matrix00, MethodId::MatrixSet00),
-    (ClassId::Matrix, MethodId::Matrix01, MethodId::MatrixSet01),
-    (ClassId::Matrix, MethodId::Matrix02, MethodId::MatrixSet02),
-    (ClassId::Matrix, MethodId::Matrix03, MethodId::MatrixSet03),
-    (ClassId::Matrix, MethodId::Matrix10, MethodId::MatrixSet10),
-    (ClassId::Matrix, MethodId::Matrix11, MethodId::MatrixSet11),
-    (ClassId::Matrix, MethodId::Matrix12, MethodId::MatrixSet12),
-    (ClassId::Matrix, MethodId::Matrix13, MethodId::MatrixSet13),
-    (ClassId::Matrix, MethodId::Matrix20, MethodId::MatrixSet20),
-    (ClassId::Matrix, MethodId::Matrix21, MethodId::MatrixSet21),
-    (ClassId::Matrix, MethodId::Matrix22, MethodId::MatrixSet22),
-    (ClassId::Matrix, MethodId::Matrix23, MethodId::MatrixSet23),
-    (ClassId::Matrix, MethodId::Matrix30, MethodId::MatrixSet30),
-    (ClassId::Matrix, MethodId::Matrix31, MethodId::MatrixSet31),
-    (ClassId::Matrix, MethodId::Matrix32, MethodId::MatrixSet32),
-    (ClassId::Matrix, MethodId::Matrix33, MethodId::MatrixSet33),
-    (
-        ClassId::RGBAShader,
-        MethodId::ShaderRed,
-        MethodId::ShaderSetRed,
-    ),
-    (
-        ClassId::RGBAShader,
-        MethodId::ShaderGreen,
-        MethodId::ShaderSetGreen,
-    ),
-    (
-        ClassId::RGBAShader,
-        MethodId::ShaderBlue,
-        MethodId::ShaderSetBlue,
-    ),
-    (
-        ClassId::RGBAShader,
-        MethodId::ShaderAlpha,
-        MethodId::ShaderSetAlpha,
-    ),
+    (ClassId::Tuple3d, MethodId::TupleX, MethodId::TupleSetX), (ClassId::Tuple3d, MethodId::TupleY, MethodId::TupleSetY),
+    (ClassId::Tuple3d, MethodId::TupleZ, MethodId::TupleSetZ), (ClassId::Matrix, MethodId::Matrix00, MethodId::MatrixSet00),
+    (ClassId::Matrix, MethodId::Matrix01, MethodId::MatrixSet01), (ClassId::Matrix, MethodId::Matrix02, MethodId::MatrixSet02),
+    (ClassId::Matrix, MethodId::Matrix03, MethodId::MatrixSet03), (ClassId::Matrix, MethodId::Matrix10, MethodId::MatrixSet10),
+    (ClassId::Matrix, MethodId::Matrix11, MethodId::MatrixSet11), (ClassId::Matrix, MethodId::Matrix12, MethodId::MatrixSet12),
+    (ClassId::Matrix, MethodId::Matrix13, MethodId::MatrixSet13), (ClassId::Matrix, MethodId::Matrix20, MethodId::MatrixSet20),
+    (ClassId::Matrix, MethodId::Matrix21, MethodId::MatrixSet21), (ClassId::Matrix, MethodId::Matrix22, MethodId::MatrixSet22),
+    (ClassId::Matrix, MethodId::Matrix23, MethodId::MatrixSet23), (ClassId::Matrix, MethodId::Matrix30, MethodId::MatrixSet30),
+    (ClassId::Matrix, MethodId::Matrix31, MethodId::MatrixSet31), (ClassId::Matrix, MethodId::Matrix32, MethodId::MatrixSet32),
+    (ClassId::Matrix, MethodId::Matrix33, MethodId::MatrixSet33), (ClassId::RGBAShader, MethodId::ShaderRed, MethodId::ShaderSetRed),
+    (ClassId::RGBAShader, MethodId::ShaderGreen, MethodId::ShaderSetGreen), (ClassId::RGBAShader, MethodId::ShaderBlue, MethodId::ShaderSetBlue),
+    (ClassId::RGBAShader, MethodId::ShaderAlpha, MethodId::ShaderSetAlpha),
 ];
 
 impl MethodId {
