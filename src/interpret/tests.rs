@@ -292,15 +292,14 @@ fn pose(shape: &PlacedShape) -> [f64; 6] {
 }
 
 #[test]
-fn what_is_not_copied_says_so_once() {
+fn grids_of_copies_are_instances() {
     let mut world = World::new(&[]);
     let root = world.root();
     world.grow(root, "[ GridClonerNode F(1) ] GridClonerNode F(1)");
     let drawn = world.draw();
-    assert_eq!(
-        (slugs(&drawn), shapes(&drawn).len()),
-        (vec!["not-cloned"], 2)
-    );
+    assert_eq!((slugs(&drawn), shapes(&drawn).len()), (vec![], 0));
+    let world = &drawn.scene.groups[drawn.scene.root.unwrap().0 as usize];
+    assert_eq!(world.instances.len(), 200, "ten by ten each");
 }
 
 #[test]
@@ -323,7 +322,11 @@ fn each_node_is_drawn_where_the_turtle_is() {
     assert_eq!(found, expected);
     assert_eq!(reflectance(&drawn, &shapes(&drawn)[0]), palette::ega(14));
     assert_eq!(reflectance(&drawn, &shapes(&drawn)[2]), palette::ega(2));
-    assert_eq!(reflectance(&drawn, &shapes(&drawn)[3]), Rgb::splat(0.5));
+    assert_eq!(
+        reflectance(&drawn, &shapes(&drawn)[3]),
+        palette::ega(14),
+        "a ball without a shader looks as the shoot it hangs on"
+    );
     let names: Vec<_> = (0..5)
         .map(|i| drawn.organs.type_name(OrganId(i)).unwrap())
         .collect();
@@ -558,7 +561,7 @@ fn pure_bodies_are_drawn_once_and_placed() {
         world.grow(root, &format!("[ Translate({i},1,0) Leaf"));
     }
     let drawn = world.draw();
-    assert_eq!(world.n_runs, 2, "two different bodies");
+    assert_eq!(world.n_runs, 3, "twigs, leaves of twigs, grey leaves");
     let root_group = &drawn.scene.groups[drawn.scene.root.unwrap().0 as usize];
     assert_eq!(root_group.instances.len(), 100);
     assert_eq!(root_group.shapes.len(), 100);
@@ -571,7 +574,10 @@ fn pure_bodies_are_drawn_once_and_placed() {
     world.grow(root, "[ D(3) Twig");
     world.n_runs = 0;
     world.draw();
-    assert_eq!(world.n_runs, 4, "two twigs, and the leaf at two diameters");
+    assert_eq!(
+        world.n_runs, 5,
+        "two twigs, and the leaf at two diameters, one of them also grey"
+    );
 }
 
 #[test]

@@ -229,13 +229,16 @@ fn geometry(page: &mut String) {
     heading(page, "### Nodes that draw nothing, and what others extend");
     types(
         page,
-        of_effect(|e| matches!(e, Effect::None | Effect::Group)),
+        of_effect(|e| matches!(e, Effect::None | Effect::Group | Effect::Grid)),
     );
 }
 
 fn shaders_and_lights(page: &mut String) {
     heading(page, "## Light");
-    types(page, builtin_named("LightNode"));
+    types(
+        page,
+        ["LightNode", "Sky"].into_iter().filter_map(builtin_named),
+    );
     page.push('\n');
     members_of(page, |class| {
         class.is_a(ClassId::Light) || class == ClassId::LightModel
