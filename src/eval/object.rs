@@ -378,7 +378,7 @@ impl Object {
                 out.push_str(self.class.name());
             }
             Data::Reader(_) | Data::Writer(_) | Data::Freeform(..) => {
-                out.push_str(self.class.name())
+                out.push_str(self.class.name());
             }
             Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
                 out.push_str(self.class.name());

@@ -306,7 +306,7 @@ mod tests {
         assert_eq!(write("#.##", 3.0), "3");
         assert_eq!(write("#,##0.0#", -1_234_567.891), "-1,234,567.89");
         assert_eq!(write("#", 0.0), "0");
-        assert_eq!(write("00.0 m", 3.14), "03.1 m");
+        assert_eq!(write("00.0 m", 4.14), "04.1 m");
         assert_eq!(write("0%", 0.256), "26%");
         assert!(Decimal::of("0.0E0").is_none());
     }

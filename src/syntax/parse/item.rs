@@ -223,7 +223,7 @@ impl Reader<'_> {
         for kid in kids(pair) {
             match kid.as_rule() {
                 Rule::type_ref if kid.as_str().trim_end() == "scaleclass" => {
-                    self.refuse_scales(span)
+                    self.refuse_scales(span);
                 }
                 Rule::type_ref => ty = Some(self.type_ref(kid)),
                 Rule::method_rest => {
