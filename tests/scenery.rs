@@ -109,7 +109,7 @@ fn what_is_no_part_of_a_scene_here_is_refused_with_what_to_do() {
         ("Ellipsoid(1, 2, 3)", "Scale"),
         ("Fog()", "leave it out"),
         ("SensorNodeGrid(0.5, 1.0, 5, 10, 0.034)", "in a loop"),
-        ("Supershape()", "curved surfaces"),
+        ("Supershape()", "curved shapes"),
         (
             "M(0) { ColorGradient g = new ColorGradient(\"jet\", 0, 1); }",
             "RGBAShader",
