@@ -4,6 +4,7 @@
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed: a
 //! [`Studio`](studio::Studio) keeps the stages up to the scene, [`Making`](making::Making) takes pictures of it.
 
+pub mod assets;
 pub mod audience;
 pub mod budget;
 pub mod charts;

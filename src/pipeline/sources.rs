@@ -1,5 +1,6 @@
 //! The texts of a run: the model's files and the file beside them.
 
+use super::assets;
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::inputs::{Inputs, MissingImport};
@@ -21,7 +22,7 @@ pub struct Sources {
     pub missing: Vec<MissingImport>,
     /// Texts of the same project that were not read.
     pub unread: Vec<PathBuf>,
-    /// Equal for equal names and texts of the model's files.
+    /// Equal for equal names and texts of the model's files, and of the meshes and images that they name.
     pub model_hash: ContentHash,
 }
 
@@ -55,11 +56,18 @@ impl Inputs {
             .zip(texts)
             .map(|(name, file)| (name.to_string_lossy().into_owned(), &*file.text))
             .collect();
-        let model_hash = ContentHash::of(
+        let mut model_hash = ContentHash::of(
             parts
                 .iter()
                 .flat_map(|(name, text)| [name.as_bytes(), text.as_bytes()]),
         );
+        if let Some(first) = self.models.first() {
+            let texts = parts.iter().map(|(_, text)| *text);
+            for (path, content) in assets::contents(world, first, texts) {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                model_hash = model_hash.with(&name).with(&content.to_string());
+            }
+        }
         Ok(Sources {
             map,
             models,

@@ -1,5 +1,6 @@
 //! What the inputs of a model contain at one moment.
 
+use crate::pipeline::assets;
 use crate::pipeline::content_hash::ContentHash;
 use crate::pipeline::inputs::Inputs;
 use crate::pipeline::world::World;
@@ -23,13 +24,20 @@ impl Snapshot {
                 .map(|content| ContentHash::of([&content[..]]));
             (path, hash)
         };
+        let texts = inputs
+            .models
+            .iter()
+            .filter_map(|path| world.read(path).ok());
+        let texts: Vec<String> = texts
+            .map(|text| String::from_utf8_lossy(&text).into_owned())
+            .collect();
+        let first = inputs.models.first().map_or(model, PathBuf::as_path);
+        let named = assets::contents(world, first, texts.iter().map(String::as_str));
+        let named = named.into_iter().map(|(path, hash)| (path, Some(hash)));
+        let named: BTreeMap<_, _> = named.collect();
+        let models = inputs.models.into_iter().chain(inputs.sidecar).map(read);
         Self {
-            contents: inputs
-                .models
-                .into_iter()
-                .chain(inputs.sidecar)
-                .map(read)
-                .collect(),
+            contents: models.chain(named).collect(),
         }
     }
 
@@ -66,6 +74,18 @@ pub(super) mod tests {
         Snapshot {
             contents: [(PathBuf::from(name), hash)].into(),
         }
+    }
+
+    #[test]
+    fn meshes_that_the_model_names_are_inputs() {
+        let world = crate::pipeline::world::fake::FakeWorld::default();
+        world.put("m/p.rgg", "void init() [ Axiom ==> Mesh(\"rock.obj\"); ]");
+        world.put("m/rock.obj", "v 0 0 0");
+        let take = || Snapshot::take(&world, Path::new("m/p.rgg"));
+        let old = take();
+        assert!(take().changes_since(&old).is_empty());
+        world.put("m/rock.obj", "v 0 0 1");
+        assert_eq!(take().changes_since(&old), ["rock.obj"]);
     }
 
     #[test]
