@@ -174,7 +174,7 @@ pub(super) fn set_vertices(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
 pub(super) fn set_indices(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let new = numbers(cx, args, 1)?;
     change(cx, args, |mesh| {
-        mesh.indices = new.into_iter().map(|x| x as i32).collect()
+        mesh.indices = new.into_iter().map(|x| x as i32).collect();
     })
 }
 

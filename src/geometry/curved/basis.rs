@@ -1,4 +1,4 @@
-//! B-spline basis functions over a list of knots. Source: [PieglTiller1997](crate::references#piegltiller1997) §2.
+//! B-spline basis functions over a list of knots. Source: [`PieglTiller1997`](crate::references#piegltiller1997) §2.
 
 use super::CurvedError;
 
@@ -189,17 +189,17 @@ impl Basis {
         }
     }
 
-    /// The functions of `degree` that are not 0 in a span, by their recursion ([PieglTiller1997](crate::references#piegltiller1997) A2.2).
+    /// The functions of `degree` that are not 0 in a span, by their recursion ([`PieglTiller1997`](crate::references#piegltiller1997) A2.2).
     fn values(&self, span: usize, t: f64, degree: usize) -> [f64; MAX_DEGREE + 1] {
         let mut values = [0.0; MAX_DEGREE + 1];
         values[0] = 1.0;
         for level in 1..=degree {
             let mut saved = 0.0;
-            for r in 0..level {
+            for (r, value) in values.iter_mut().enumerate().take(level) {
                 let right = self.knots[span + r + 1] - t;
                 let left = t - self.knots[span + r + 1 - level];
-                let part = values[r] / (right + left);
-                values[r] = saved + right * part;
+                let part = *value / (right + left);
+                *value = saved + right * part;
                 saved = left * part;
             }
             values[level] = saved;

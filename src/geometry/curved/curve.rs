@@ -1,4 +1,4 @@
-//! Rational B-spline curves in space. Source: [PieglTiller1997](crate::references#piegltiller1997) §4 and §7.
+//! Rational B-spline curves in space. Source: [`PieglTiller1997`](crate::references#piegltiller1997) §4 and §7.
 
 use super::CurvedError;
 use super::basis::Basis;

@@ -1,4 +1,4 @@
-//! Rational B-spline surfaces. Source: [PieglTiller1997](crate::references#piegltiller1997) §4.4, §8.5.
+//! Rational B-spline surfaces. Source: [`PieglTiller1997`](crate::references#piegltiller1997) §4.4, §8.5.
 
 use super::basis::Basis;
 use super::curve::{Curve, check_points, projected, turn_points};

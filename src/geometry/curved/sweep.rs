@@ -197,7 +197,7 @@ impl Sweep {
         let mut tests = CAP_TESTS;
         let triangles = &mut mesh.triangles;
         let cut = polygon::cut(&outline, &mut tests, |triangle| {
-            triangles.push(triangle.map(|corner| corner as u32 + n))
+            triangles.push(triangle.map(|corner| corner as u32 + n));
         });
         if cut.is_err() {
             return;

@@ -142,16 +142,19 @@ impl Lines<'_> {
         let width = u.len();
         let mut halved = [vec![false; u.len() - 1], vec![false; v.len() - 1]];
         let at = |i: usize, j: usize| points[j * width + i];
-        for j in 0..v.len() {
-            for i in 0..u.len() - 1 {
-                let curve = |share: f64| self.surface.point(DVec2::new(between(u, i, share), v[j]));
-                halved[0][i] = halved[0][i] || strays(curve, [at(i, j), at(i + 1, j)], allowed);
+        let [halved_u, halved_v] = &mut halved;
+        for (j, at_v) in v.iter().enumerate() {
+            for (i, is_halved) in halved_u.iter_mut().enumerate() {
+                let curve =
+                    |share: f64| self.surface.point(DVec2::new(between(u, i, share), *at_v));
+                *is_halved = *is_halved || strays(curve, [at(i, j), at(i + 1, j)], allowed);
             }
         }
-        for j in 0..v.len() - 1 {
-            for i in 0..u.len() {
-                let curve = |share: f64| self.surface.point(DVec2::new(u[i], between(v, j, share)));
-                halved[1][j] = halved[1][j] || strays(curve, [at(i, j), at(i, j + 1)], allowed);
+        for (j, is_halved) in halved_v.iter_mut().enumerate() {
+            for (i, at_u) in u.iter().enumerate() {
+                let curve =
+                    |share: f64| self.surface.point(DVec2::new(*at_u, between(v, j, share)));
+                *is_halved = *is_halved || strays(curve, [at(i, j), at(i, j + 1)], allowed);
             }
         }
         for j in 0..v.len() - 1 {
