@@ -58,7 +58,7 @@ fn finish(class: ClassId, shader: &Finish) -> Material {
     }
 }
 
-/// GroIMP's `Phong`, after the formulas in its documentation. With c_t the transparency, what does not pass, 1 - c_t, is what
+/// GroIMP's `Phong`, after the formulas in its documentation. With `c_t` the transparency, what does not pass, `1 - c_t`, is what
 /// the matt and glossy parts get (unless `interpolatedTransparency` is off); the diffuse transparency gets it all.
 fn phong(shader: &Phong) -> Material {
     let through = Rgb::from_array(shader.transparency);

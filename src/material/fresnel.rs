@@ -18,7 +18,7 @@ pub struct Boundary {
 
 /// The amplitudes that a boundary reflects of both polarisations, and the cosine on the far side; `None` if it reflects all.
 ///
-/// Source: [BornWolf1999, §1.5.2](crate::references#bornwolf1999).
+/// Source: [`BornWolf1999`, §1.5.2](crate::references#bornwolf1999).
 fn amplitudes(cos_near: f64, eta: f64) -> Option<(f64, f64, f64)> {
     if eta == 1.0 {
         // Equal media have no boundary, not even for rays along it.

@@ -78,7 +78,7 @@ pub struct ScatterSample {
     pub weight: Rgb,
     /// With which density it was chosen.
     pub density: Density,
-    /// The part of `weight` that comes from the compression of radiance at a boundary, (n_o/n_i)²; 1 elsewhere. It cancels
+    /// The part of `weight` that comes from the compression of radiance at a boundary, `(n_o/n_i)²`; 1 elsewhere. It cancels
     /// when the path comes out of the glass again, so Russian roulette must not see it.
     pub compression: f64,
 }
@@ -100,7 +100,7 @@ impl ScatteringFrame {
     }
 
     /// What a path that carries flux has to be multiplied by, because smoothed normals bend cosines:
-    /// |wo·n_s| |wi·n_g| / (|wo·n_g| |wi·n_s|). 1 for radiance and for true normals.
+    /// `|wo·n_s| |wi·n_g| / (|wo·n_g| |wi·n_s|)`. 1 for radiance and for true normals.
     ///
     /// Source: [Veach1997, §5.3](crate::references#veach1997).
     fn adjoint_factor(&self, wo: DVec3, wi: DVec3, transport: Transport) -> f64 {
@@ -377,7 +377,7 @@ impl Scattering<'_> {
         })
     }
 
-    /// (n_o/n_i)² of a crossing from `wo` to `wi`; 1 on the same side, without a body, and for flux.
+    /// `(n_o/n_i)²` of a crossing from `wo` to `wi`; 1 on the same side, without a body, and for flux.
     fn compression(
         &self,
         frame: &ScatteringFrame,

@@ -25,7 +25,7 @@ pub(super) struct Spot {
 
 /// A direction chosen by a lobe.
 pub(super) enum Event {
-    /// One of few directions: local, its part of the light, and (n_o/n_i)² (already in the weight).
+    /// One of few directions: local, its part of the light, and `(n_o/n_i)²` (already in the weight).
     Delta {
         wi: DVec3,
         weight: Rgb,
@@ -77,7 +77,7 @@ fn relative_index(ior: f64, is_front: bool) -> f64 {
     if is_front { ior } else { 1.0 / ior }
 }
 
-/// (n_o/n_i)² of light that crosses a lobe's boundary, seen from the front or back; 1 without boundary and for flux.
+/// `(n_o/n_i)²` of light that crosses a lobe's boundary, seen from the front or back; 1 without boundary and for flux.
 pub(super) fn compression(lobe: &Lobe, is_front: bool, transport: Transport) -> f64 {
     match (lobe.kind, transport) {
         (LobeKind::Dielectric { ior, .. }, Transport::Radiance) => {
