@@ -324,3 +324,26 @@ impl Nesting {
         self.depth = self.depth - old + *chain;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blanks_and_remarks_become_spaces_of_the_same_length() {
+        let text = "A\t// é\r\n/* x\n */B\u{A0}\"a //\t b\"\u{FEFF};";
+        let plain = scan(text).plain;
+        assert_eq!(plain.len(), text.len());
+        let tokens: Vec<&str> = plain.split_whitespace().collect();
+        assert_eq!(tokens, ["A", "B", "\"a", "//", "b\"", ";"]);
+        assert!(!plain.contains(['\n', '\r', '\u{A0}', 'é']), "{plain:?}");
+        assert_eq!(plain.find("\"a //\t b\""), text.find("\"a //\t b\""));
+    }
+
+    #[test]
+    fn an_unclosed_string_keeps_its_line_break() {
+        let scan = scan("a \"b\nc d\" e");
+        assert_eq!(scan.plain, "a \"b\nc d\" e");
+        assert_eq!(scan.problems.len(), 2);
+    }
+}
