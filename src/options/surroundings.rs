@@ -1,11 +1,12 @@
 //! Values of the options that say what light stands round a model.
 
 use super::value::{OptionValue, numbers};
+use crate::color::Rgb;
 use crate::light::sun_position::{Moment, Place, YEARS};
 use std::path::PathBuf;
 
 /// What the sky is.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SkyKind {
     /// Clear, where the model is given daylight at all.
     Auto,
@@ -15,12 +16,20 @@ pub enum SkyKind {
     Overcast,
     /// Equally bright all round, above and below the horizon.
     Uniform,
+    /// Of this radiance all round, W/(m² sr); with a sun only if one is asked for.
+    Radiance(Rgb),
     /// A panorama.
     Image(PathBuf),
 }
 
 impl OptionValue for SkyKind {
     fn parse(text: &str) -> Result<Self, String> {
+        if let Some(radiance) = numbers::<3>(text) {
+            let is_light = radiance.iter().all(|channel| *channel >= 0.0);
+            return is_light
+                .then(|| Self::Radiance(Rgb::from_array(radiance)))
+                .ok_or_else(|| "a radiance R,G,B of numbers from 0 up".into());
+        }
         let path = PathBuf::from(text);
         let suffix = path
             .extension()
@@ -32,10 +41,23 @@ impl OptionValue for SkyKind {
             ("uniform", _) => Ok(Self::Uniform),
             (_, Some("exr" | "hdr")) => Ok(Self::Image(path)),
             _ => Err(
-                "`auto`, `clear`, `overcast`, `uniform`, or a panorama `FILE.exr` or `FILE.hdr`"
+                "`auto`, `clear`, `overcast`, `uniform`, a radiance R,G,B, or a panorama `FILE.exr` or `FILE.hdr`"
                     .into(),
             ),
         }
+    }
+}
+
+/// What the sun gives a surface that faces it, W/m² per channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SunIrradiance(pub Rgb);
+
+impl OptionValue for SunIrradiance {
+    fn parse(text: &str) -> Result<Self, String> {
+        numbers::<3>(text)
+            .filter(|rgb| rgb.iter().all(|channel| *channel >= 0.0))
+            .map(|rgb| Self(Rgb::from_array(rgb)))
+            .ok_or_else(|| "R,G,B in watts per square metre, from 0 up".into())
     }
 }
 
@@ -166,7 +188,14 @@ mod tests {
             SkyKind::parse("a/b.EXR"),
             Ok(SkyKind::Image("a/b.EXR".into()))
         );
-        for text in ["", "cloudy", "sky.png"] {
+        let gray = SkyKind::Radiance(Rgb::splat(0.5));
+        assert_eq!(SkyKind::parse("0.5, 0.5, 0.5"), Ok(gray));
+        assert_eq!(
+            SunIrradiance::parse("1,2,3"),
+            Ok(SunIrradiance(Rgb::new(1.0, 2.0, 3.0)))
+        );
+        assert!(SunIrradiance::parse("1,2,-3").is_err());
+        for text in ["", "cloudy", "sky.png", "1,2,-3", "1,2"] {
             assert!(SkyKind::parse(text).is_err(), "{text}");
         }
     }

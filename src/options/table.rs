@@ -1,7 +1,7 @@
 //! The table of options: one row each.
 
 use super::setting::{Origin, SetError, Setting};
-use super::surroundings::SkyKind;
+use super::surroundings::{SkyKind, SunIrradiance};
 use super::value::{
     Brightness, Bytes, Daylight, GridSize, Ground, Quality, Renderer, Seconds, Size, Threads,
     Turbidity,
@@ -242,7 +242,9 @@ options! {
     date: Option<Moment> = "none", "date", "YYYY-MM-DDThh:mm", Sky, Scene, PICTURING;
     /// Where on Earth the model stands, in degrees, north and east positive; for `date`
     place: Option<Place> = "none", "place", "LAT,LON", Sky, Scene, PICTURING;
-    /// What the sky is: `clear`, `overcast`, `uniform`, or a panorama `FILE.exr` or `FILE.hdr`; `auto`: clear, where there is daylight
+    /// What the sun gives a surface that faces it, W/m²; `auto`: what `turbidity` lets through
+    sun_irradiance: Option<SunIrradiance> = "auto", "sun-irradiance", "R,G,B", Sky, Scene, PICTURING;
+    /// What the sky is: `clear`, `overcast`, `uniform`, the same radiance R,G,B all round, or a panorama `FILE.exr` or `FILE.hdr`; `auto`: clear, where there is daylight
     sky: SkyKind = "auto", "sky", "KIND", Sky, Scene, PICTURING;
     /// Scales sky and sun to give so many watts per square metre on level ground, summed over red, green and blue; `auto`: as in nature, or as the panorama has it
     sky_power: Option<Brightness> = "auto", "sky-power", "W/M2", Sky, Scene, PICTURING;

@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::math::Bounds3;
 use crate::math::angle::Angle;
 use crate::options::Options;
-use crate::options::surroundings::SkyKind;
+use crate::options::surroundings::{SkyKind, SunIrradiance};
 use crate::options::value::{Brightness, Daylight, Ground};
 use crate::scene::description::{
     Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
@@ -69,6 +69,10 @@ impl Outdoors {
                     .filter(|_| !options.sky.origin.beats(options.sun.origin))
                     .and_then(|sun| clear(sun).sun),
             }),
+            (SkyKind::Radiance(radiance), _) => Some(Environment {
+                sky: Sky::Uniform(*radiance),
+                sun: sun.and_then(|sun| clear(sun).sun),
+            }),
             (SkyKind::Overcast, _) => Some(Environment::overcast(elevation, ground)),
             (SkyKind::Uniform, _) => {
                 let overcast = Dome::new(&Environment::overcast(elevation, ground));
@@ -87,7 +91,9 @@ impl Outdoors {
             }
         };
         Ok(Self {
-            environment: environment.map(|environment| as_bright_as_asked(environment, options)),
+            environment: environment
+                .map(|environment| with_sun_as_asked(environment, options))
+                .map(|environment| as_bright_as_asked(environment, options)),
             is_given: !has_light,
         })
     }
@@ -149,6 +155,16 @@ fn reflectance(options: &Options) -> Rgb {
         Ground::Color(reflectance) => reflectance,
         Ground::Auto | Ground::None => SOIL,
     }
+}
+
+/// Gives the sun the irradiance that was asked for.
+fn with_sun_as_asked(mut environment: Environment, options: &Options) -> Environment {
+    if let (Some(sun), Some(SunIrradiance(wanted))) =
+        (&mut environment.sun, options.sun_irradiance.value)
+    {
+        sun.irradiance = wanted;
+    }
+    environment
 }
 
 /// Scales sky and sun together to the power that was asked for; what is dark stays dark.
@@ -431,6 +447,15 @@ mod tests {
         assert!(matches!(sky(&[("sky", "clear")]).sky, Sky::ClearSky { .. }));
         assert!(sky(&[("sky", "overcast")]).sun.is_none());
         assert!(matches!(sky(&[("sky", "a.exr")]).sky, Sky::Image { .. }));
+        let given = [
+            ("sky", "1,2,3"),
+            ("sun", "90,30"),
+            ("sun-irradiance", "5,6,7"),
+        ];
+        let given = sky(&given);
+        assert_eq!(given.sky, Sky::Uniform(Rgb::new(1.0, 2.0, 3.0)));
+        assert_eq!(given.sun.unwrap().irradiance, Rgb::new(5.0, 6.0, 7.0));
+        assert!(sky(&[("sky", "1,2,3")]).sun.is_none());
         assert!(sky(&[("sky", "a.exr"), ("sun", "90,30")]).sun.is_some());
         // Overcast and uniform skies of the same hour give the ground the same light.
         let light = |flags: &[(&str, &str)]| Dome::new(&sky(flags)).horizontal_irradiance();
