@@ -39,6 +39,8 @@ const HANG: Duration = Duration::from_secs(30);
 const ADDRESS_SPACE: u64 = 3 << 20;
 /// Larger models of the corpus are left out: they would take most of the time.
 const LARGEST: usize = 2_500;
+/// Texts count as this much longer than they are, which stands for the cost of any input, bytes.
+const SHORTEST: usize = 200;
 /// Steps of each model.
 const STEPS: u64 = 3;
 
@@ -147,6 +149,9 @@ impl Random {
 struct Corpus {
     texts: Vec<String>,
     tokens: Vec<Vec<String>>,
+    /// Running sums of the texts' shares of the inputs, which fall with their length: each text gets the same time, so that ten
+    /// million inputs are not mostly a few long models.
+    shares: Vec<f64>,
     /// How many, from the first, once failed.
     n_regressions: usize,
 }
@@ -174,11 +179,25 @@ impl Corpus {
             at <= n_regressions || text.len() <= LARGEST
         });
         let tokens = texts.iter().map(|text| tokens(text)).collect();
+        let mut sum = 0.0;
+        let shares = texts.iter().map(|text| {
+            sum += 1.0 / (SHORTEST + text.len()) as f64;
+            sum
+        });
         Self {
+            shares: shares.collect(),
             texts,
             tokens,
             n_regressions,
         }
+    }
+
+    /// A text, short ones more often.
+    fn pick(&self, random: &mut Random) -> &[String] {
+        let total = self.shares.last().copied().unwrap_or(0.0);
+        let at = (random.next() >> 11) as f64 / (1_u64 << 53) as f64 * total;
+        let index = self.shares.partition_point(|share| *share <= at);
+        &self.tokens[index.min(self.tokens.len() - 1)]
     }
 
     /// The input of this number.
@@ -187,8 +206,9 @@ impl Corpus {
             return text.clone();
         }
         let mut random = Random(number);
-        let mut input = random.pick(&self.tokens).clone();
-        let n_mutations = 1 + random.below(2) * random.below(4);
+        let mut input = self.pick(&mut random).to_vec();
+        // Mostly one, so that enough inputs are good enough to grow.
+        let n_mutations = 1 + random.below(4) / 3 * random.below(4);
         for _ in 0..n_mutations {
             self.mutate(&mut input, &mut random);
         }
