@@ -2,7 +2,7 @@
 //! lamps are small; no light that a matt surface has thrown on.
 //!
 //! Source: [Whitted1980](crate::references#whitted1980), with an end by weight and not by depth alone
-//! ([HallGreenberg1983](crate::references#hallgreenberg1983)) and reflections in rough surfaces followed along one chosen
+//! ([`HallGreenberg1983`](crate::references#hallgreenberg1983)) and reflections in rough surfaces followed along one chosen
 //! direction ([Cook1984](crate::references#cook1984)).
 //!
 //! A ray that meets mirror or glass splits into all the directions that are sent light from there, each with its share; nothing
@@ -86,7 +86,10 @@ struct Branch {
 impl RadianceEstimator for RaytracerEstimator<'_> {
     fn incident_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb {
         let mut radiance = Rgb::BLACK;
-        let mut n_vertices = 0;
+        let mut draws = Draws {
+            sampler,
+            n_vertices: 0,
+        };
         let mut open = vec![Branch {
             ray: *ray,
             weight: Rgb::WHITE,
@@ -95,7 +98,7 @@ impl RadianceEstimator for RaytracerEstimator<'_> {
             sees_lights: true,
         }];
         while let Some(branch) = open.pop() {
-            radiance += self.follow(branch, &mut open, &mut n_vertices, sampler, rays);
+            radiance += self.follow(branch, &mut open, &mut draws, rays);
         }
         radiance
     }
@@ -107,8 +110,7 @@ impl RaytracerEstimator<'_> {
         &self,
         branch: Branch,
         open: &mut Vec<Branch>,
-        n_vertices: &mut u32,
-        sampler: &mut Sampler,
+        draws: &mut Draws<'_>,
         rays: &mut RayCounts,
     ) -> Rgb {
         let mut radiance = Rgb::BLACK;
@@ -134,8 +136,8 @@ impl RaytracerEstimator<'_> {
                 if self.shows_emission(&vertex, &branch) {
                     radiance += met * optics.emission[usize::from(!vertex.point.is_front)];
                 }
-                radiance += met * self.direct(&vertex, &branch.media, n_vertices, sampler, rays);
-                self.split(&vertex, met, &branch, open, n_vertices, sampler);
+                radiance += met * self.direct(&vertex, &branch.media, draws, rays);
+                self.split(&vertex, met, &branch, open, draws);
             }
             if optics.is_opaque() {
                 return radiance;
@@ -170,8 +172,7 @@ impl RaytracerEstimator<'_> {
         &self,
         vertex: &Vertex<'_>,
         media: &Media,
-        n_vertices: &mut u32,
-        sampler: &mut Sampler,
+        draws: &mut Draws<'_>,
         rays: &mut RayCounts,
     ) -> Rgb {
         let scattering = &vertex.optics.scattering;
@@ -192,8 +193,7 @@ impl RaytracerEstimator<'_> {
         let n = self.settings.light_samples.max(1);
         let mut radiance = Rgb::BLACK;
         for _ in 0..n {
-            *n_vertices += 1;
-            sampler.start_vertex(*n_vertices);
+            let sampler = draws.next();
             let (reach, strategies) = (Reach::First, Strategies::LightsOnly);
             radiance += self
                 .sources
@@ -209,16 +209,14 @@ impl RaytracerEstimator<'_> {
         met: Rgb,
         branch: &Branch,
         open: &mut Vec<Branch>,
-        n_vertices: &mut u32,
-        sampler: &mut Sampler,
+        draws: &mut Draws<'_>,
     ) {
         if vertex.optics.scattering.is_matt() || branch.depth >= self.settings.max_depth {
             return;
         }
         let lobes = vertex.optics.scattering.lobes;
         for lobe in lobes.chunks(1) {
-            *n_vertices += 1;
-            sampler.start_vertex(*n_vertices);
+            let sampler = draws.next();
             let alone = Scattering {
                 sides: [Side::default(); 2],
                 lobes: lobe,
@@ -241,6 +239,21 @@ impl RaytracerEstimator<'_> {
                 });
             }
         }
+    }
+}
+
+/// Random numbers, other ones for each question that is asked along the tree of rays.
+struct Draws<'a> {
+    sampler: &'a mut Sampler,
+    n_vertices: u32,
+}
+
+impl Draws<'_> {
+    /// Those of the next question.
+    fn next(&mut self) -> &Sampler {
+        self.n_vertices += 1;
+        self.sampler.start_vertex(self.n_vertices);
+        self.sampler
     }
 }
 

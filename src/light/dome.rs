@@ -55,7 +55,7 @@ struct Landscape {
 #[derive(Clone, Debug)]
 enum Above {
     /// Its brightness as a multiple of the natural one.
-    Clear(ClearSky, f64),
+    Clear(Box<ClearSky>, f64),
     /// Radiance of the zenith.
     Overcast(Rgb),
 }
@@ -164,13 +164,13 @@ impl Panorama {
     }
 
     /// The picture's own direction of a direction of the world.
-    fn into_picture(&self, w: DVec3) -> DVec3 {
+    fn in_picture(&self, w: DVec3) -> DVec3 {
         let (sin, cos) = (self.turn.sin(), self.turn.cos());
         DVec3::new(cos * w.x + sin * w.y, cos * w.y - sin * w.x, w.z)
     }
 
     fn radiance(&self, w: DVec3) -> Rgb {
-        self.image.value(self.into_picture(w)) * self.strength
+        self.image.value(self.in_picture(w)) * self.strength
     }
 
     fn sample(&self, u: DVec2) -> DVec3 {
@@ -206,7 +206,7 @@ impl Dome {
                 let sky = ClearSky::new(*sun_azimuth, *sun_elevation, *turbidity, *ground_albedo);
                 match sky {
                     Some(sky) if *strength > 0.0 => {
-                        landscape(Above::Clear(sky, *strength), *ground_albedo)
+                        landscape(Above::Clear(Box::new(sky), *strength), *ground_albedo)
                     }
                     Some(_) | None => Content::Dark,
                 }
@@ -290,7 +290,7 @@ impl Dome {
             Content::Uniform(_) => warp::sphere_pdf_solid_angle(),
             Content::Landscape(_) if w.z < 0.0 => 0.0,
             Content::Landscape(land) => land.table.pdf_solid_angle(w),
-            Content::Image(panorama) => panorama.table.pdf_solid_angle(panorama.into_picture(w)),
+            Content::Image(panorama) => panorama.table.pdf_solid_angle(panorama.in_picture(w)),
         }
     }
 }
@@ -450,7 +450,7 @@ mod tests {
                 let u = DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n);
                 by_cosine += dome.radiance(warp::cosine_hemisphere(u));
             }
-            by_cosine = by_cosine * (PI / f64::from(n * n));
+            by_cosine *= PI / f64::from(n * n);
             for channel in 0..3 {
                 let ratio = by_samples[channel] / by_cosine[channel];
                 assert!((ratio - 1.0).abs() < 5e-3, "{turn} {channel}: {ratio}");

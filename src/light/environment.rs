@@ -43,7 +43,7 @@ pub enum Sky {
     },
     /// The standard overcast sky: three times as bright at the zenith as at the horizon, the same all round.
     ///
-    /// L(h) = `zenith` · (1 + 2 sin h) / 3 at the elevation h ([MoonSpencer1942](crate::references#moonspencer1942), CIE
+    /// L(h) = `zenith` · (1 + 2 sin h) / 3 at the elevation h ([`MoonSpencer1942`](crate::references#moonspencer1942), CIE
     /// standard). Below the horizon it shows ground as [`Sky::ClearSky`] does.
     Overcast {
         /// Radiance of the zenith, W/(m² sr) per channel.
@@ -138,7 +138,7 @@ impl Environment {
     /// The light of a day when clouds cover all of the sky and hide the sun, which stands at this elevation.
     ///
     /// Grey, with the mean illuminance measured under overcast skies, 300 + 21,000 sin(elevation) lux on the ground
-    /// ([KrochmannSeidl1974](crate::references#krochmannseidl1974)). Dark if the sun is not above the horizon.
+    /// ([`KrochmannSeidl1974`](crate::references#krochmannseidl1974)). Dark if the sun is not above the horizon.
     #[must_use]
     pub fn overcast(elevation: Angle, ground_albedo: Rgb) -> Self {
         let height = elevation.sin();
@@ -162,12 +162,12 @@ impl Environment {
     pub fn brightened(mut self, factor: f64) -> Self {
         match &mut self.sky {
             Sky::None => {}
-            Sky::Uniform(radiance) => *radiance = *radiance * factor,
-            Sky::Overcast { zenith, .. } => *zenith = *zenith * factor,
+            Sky::Uniform(radiance) => *radiance *= factor,
+            Sky::Overcast { zenith, .. } => *zenith *= factor,
             Sky::ClearSky { strength, .. } | Sky::Image { strength, .. } => *strength *= factor,
         }
         if let Some(sun) = &mut self.sun {
-            sun.irradiance = sun.irradiance * factor;
+            sun.irradiance *= factor;
         }
         self
     }

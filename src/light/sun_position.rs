@@ -104,7 +104,8 @@ impl Place {
     }
 }
 
-/// By how many degrees the air lifts what stands at this true elevation in degrees ([Michalsky1988], standard air).
+/// By how many degrees standard air lifts what stands at this true elevation in degrees
+/// ([Michalsky1988](crate::references#michalsky1988)).
 fn refraction(elevation: f64) -> f64 {
     let e = elevation;
     if e < -0.56 {
