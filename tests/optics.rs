@@ -272,7 +272,7 @@ fn scattered(material: &Material, frame: &ScatteringFrame, wo: DVec3, n: u64) ->
         .collect()
 }
 
-/// White surfaces: nothing is lost and nothing made. Radiance of an even surrounding is (n_o/n_i)² in glass, so flux is asked.
+/// White surfaces: nothing is lost and nothing made. Radiance of an even surrounding is `(n_o/n_i)²` in glass, so flux is asked.
 #[test]
 fn white_furnace() {
     let white = |m: Material| m;
@@ -396,7 +396,7 @@ fn reciprocity() {
 }
 
 /// Flux carried one way and radiance gathered the other way along the same path are the same, also under smoothed normals:
-/// value(flux, a → b) / |b · n_g| = value(radiance, b ← a) / |a · n_g|, both per projected solid angle of the true surface.
+/// `value(flux, a → b) / |b · n_g| = value(radiance, b ← a) / |a · n_g|`, both per projected solid angle of the true surface.
 #[test]
 fn flux_is_the_adjoint_of_radiance() {
     let bent = ScatteringFrame {

@@ -11,6 +11,7 @@ mod arithmetic;
 mod assign;
 mod body;
 mod call;
+mod candidate;
 mod class;
 mod closure;
 mod coerce;
