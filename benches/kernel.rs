@@ -1,128 +1,249 @@
-//! Rays per second of the tracing core: a tree of a million triangles, an instanced forest, and a Cornell box.
+//! Rays per second of the tracing core, beside Embree where that is installed (Debian: `libembree-dev`).
 //!
-//! `cargo bench --bench kernel`. Prints the best of several runs, in millions of rays per second on one thread and on all.
+//! `cargo bench --bench kernel`, or with part of a scene's name after `--`. Both programs get the same rays in turns; the best of several
+//! turns counts. Rates are those of two threads: rays, divided by half of the processor time that both threads used
+//! together, so that other work on the machine counts as little as possible.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 
+#[path = "support/embree.rs"]
+mod embree;
+#[path = "support/trees.rs"]
+mod trees;
 #[path = "../tests/support/worlds.rs"]
 mod worlds;
 
-use glam::{DAffine3, DMat3, DVec3};
-use rayon::prelude::*;
-use std::f64::consts::PI;
-use std::sync::LazyLock;
+use embree::{Embree, Server};
+use glam::DVec3;
+use rustix::time::{ClockId, clock_gettime};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
-use understory::geometry::{Shape, TriangleMesh};
+use trees::{Parts, big_tree, cornell, forest};
 use understory::math::Ray;
-use understory::scene::Scene;
-use understory::scene::description::{Group, PlacedShape};
-use worlds::{Random, describe, icosphere, instance, mesh, placed};
+use understory::scene::description::Group;
+use understory::scene::{Scene, SurfacePoint};
+use worlds::{Random, describe};
 
 /// Pixels along one side of the picture whose rays are measured.
 const SIDE: usize = 512;
+/// Threads that send rays.
+const THREADS: usize = 2;
+/// Turns of each program.
+const TURNS: usize = 4;
+/// Rays that a thread takes at once.
+const CHUNK: usize = 256;
+/// Where rays from surfaces begin to count, in metres: Embree's coordinates have seven digits.
+const NEAREST: f64 = 1e-3;
 
 fn main() {
-    measure(
-        "tree of 1 M triangles",
-        tree_mesh(),
-        DVec3::new(0.0, -22.0, 9.0),
-        DVec3::Z * 7.0,
+    let wanted: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|word| !word.starts_with('-'))
+        .collect();
+    let is_wanted = |name: &str| wanted.is_empty() || wanted.iter().any(|part| name.contains(part));
+    let embree = Embree::new()
+        .inspect_err(|problem| println!("without Embree: {problem}"))
+        .ok();
+
+    println!(
+        "| scene | rays | million rays/s | Embree | ratio | Embree's packets | same t | hits |"
     );
-    measure(
-        "forest of 2000 trees, 20 k primitives each",
-        forest(),
-        DVec3::new(-75.0, -75.0, 35.0),
-        DVec3::ZERO,
-    );
-    measure(
-        "the same forest from inside",
-        forest(),
-        DVec3::new(1.0, 1.0, 1.7),
-        DVec3::new(9.0, 9.0, 4.0),
-    );
-    measure(
-        "Cornell box",
-        cornell(),
-        DVec3::new(2.78, -8.0, 2.73),
-        DVec3::new(2.78, 2.8, 2.73),
-    );
-    many_instances();
+    println!("|---|---|---|---|---|---|---|---|");
+    let above = |half: f64| (DVec3::new(-half, -half, 35.0), DVec3::ZERO);
+    let inside = (DVec3::new(1.0, 1.0, 1.7), DVec3::new(9.0, 9.0, 4.0));
+    let mut cases: Vec<(String, Box<dyn Fn() -> Vec<Group>>, Vec<(DVec3, DVec3)>)> = vec![
+        (
+            "tree of a million triangles".into(),
+            Box::new(big_tree),
+            vec![(DVec3::new(0.0, -22.0, 9.0), DVec3::Z * 7.0)],
+        ),
+        (
+            "Cornell box".into(),
+            Box::new(cornell),
+            vec![(DVec3::new(2.78, -8.0, 2.73), DVec3::new(2.78, 2.8, 2.73))],
+        ),
+        (
+            "2000 trees of frusta and parallelograms".into(),
+            Box::new(|| forest(Parts::Solids, 2000)),
+            vec![above(75.0), inside],
+        ),
+        (
+            "2000 trees of triangles".into(),
+            Box::new(|| forest(Parts::Triangles, 2000)),
+            vec![above(75.0), inside],
+        ),
+    ];
+    for exponent in 0..=6 {
+        let count = 10_u32.pow(exponent);
+        cases.push((
+            format!("curve, {count} trees"),
+            Box::new(move || forest(Parts::Triangles, count)),
+            vec![above(50.0), inside],
+        ));
+    }
+    for (name, groups, views) in cases.iter().filter(|case| is_wanted(&case.0)) {
+        measure(name, groups(), views, embree.as_ref());
+    }
 }
 
-/// Builds the groups and measures camera rays, bounces off what they hit, and rays to the sun from there.
-fn measure(name: &str, groups: Vec<Group>, eye: DVec3, target: DVec3) {
+/// Builds the groups and measures, for each view, camera rays, bounces off what they hit, and rays to the sun from there.
+fn measure(name: &str, groups: Vec<Group>, views: &[(DVec3, DVec3)], embree: Option<&Embree>) {
+    let mut server = embree.and_then(|embree| {
+        let server = embree.start(&groups);
+        server
+            .inspect_err(|problem| println!("Embree fails: {problem}"))
+            .ok()
+    });
     let start = Instant::now();
     let scene = Scene::build(describe(groups)).expect("the scene is valid");
     let build = start.elapsed().as_secs_f64();
-    let stats = scene.stats();
-    println!(
-        "{name}: built in {build:.2} s, {:.1} MB, {} stored primitives",
-        stats.bytes as f64 / 1e6,
-        stats.primitives
-    );
-
-    let camera = camera_rays(eye, target);
-    let mut random = Random(1);
-    let points: Vec<_> = camera
-        .iter()
-        .filter_map(|ray| scene.closest(ray).map(|hit| scene.surface(ray, &hit)))
-        .collect();
-    let facing = |point: &understory::scene::SurfacePoint| {
-        if point.is_front {
-            point.normal_g
-        } else {
-            -point.normal_g
-        }
-    };
-    let bounces: Vec<Ray> = points
-        .iter()
-        .map(|point| point.spawn_ray((facing(point) + random.direction() * 0.999).normalize()))
-        .collect();
-    let sun = DVec3::new(0.4, -0.3, 0.87).normalize();
-    let shadows: Vec<Ray> = points.iter().map(|point| point.spawn_ray(sun)).collect();
-    rate("camera", &camera, |ray| scene.closest(ray).is_some());
-    rate("bounce", &bounces, |ray| scene.closest(ray).is_some());
-    rate("bounce, any hit", &bounces, |ray| scene.occluded(ray));
-    rate("sun", &shadows, |ray| scene.occluded(ray));
-    rate("camera with shading", &camera, |ray| {
-        scene
-            .closest(ray)
-            .is_some_and(|hit| scene.surface(ray, &hit).is_front)
-    });
-}
-
-/// Prints how many rays per second a query answers, and how many of them hit.
-fn rate(name: &str, rays: &[Ray], query: impl Fn(&Ray) -> bool + Sync) {
-    let mut best = [0.0_f64; 2];
-    let mut hits = 0;
-    for _ in 0..4 {
-        let start = thread_seconds();
-        hits = rays.iter().filter(|ray| query(ray)).count();
-        best[0] = best[0].max(rays.len() as f64 / (thread_seconds() - start));
-        let start = Instant::now();
-        let again = rays
-            .par_chunks(256)
-            .map(|rays| rays.iter().filter(|ray| query(ray)).count());
-        assert_eq!(again.sum::<usize>(), hits);
-        best[1] = best[1].max(rays.len() as f64 / start.elapsed().as_secs_f64());
+    for (view, (eye, target)) in views.iter().enumerate() {
+        let name = match (views.len(), view) {
+            (1, _) => name.to_owned(),
+            (_, 0) => format!("{name}, from above"),
+            _ => format!("{name}, from inside"),
+        };
+        let [camera, bounces, shadows] = rays(&scene, *eye, *target);
+        compare(&scene, server.as_mut(), &name, "camera", &camera);
+        compare(&scene, server.as_mut(), &name, "bounce", &bounces);
+        compare(&scene, server.as_mut(), &name, "sun", &shadows);
     }
-    println!(
-        "    {name:20} {:6.2} / {:6.2} Mrays/s, {:3.0} % hit",
-        best[0] / 1e6,
-        best[1] / 1e6,
-        100.0 * hits as f64 / rays.len().max(1) as f64
+    let stats = scene.stats();
+    let mut line = format!(
+        "{name}: built in {build:.2} s, {:.1} MB",
+        stats.bytes as f64 / 1e6
     );
+    if let Some(bytes) = stats.instance_bytes.checked_div(stats.instances) {
+        line += &format!(", {bytes} bytes per instance");
+    }
+    if let Some(server) = server {
+        line += &format!(
+            "; Embree {:.2} s, {:.1} MB",
+            server.build,
+            server.bytes / 1e6
+        );
+    }
+    println!("{line}");
 }
 
-/// Processor time of this thread in seconds where the system tells (other work on the machine does not count then),
-/// otherwise wall clock.
+/// Rays from the camera, bounces off what they meet, and rays to the sun from there.
+fn rays(scene: &Scene, eye: DVec3, target: DVec3) -> [Vec<Ray>; 3] {
+    let camera = camera_rays(eye, target);
+    let hits = camera
+        .iter()
+        .filter_map(|ray| scene.closest(ray).map(|hit| scene.surface(ray, &hit)));
+    let points: Vec<SurfacePoint> = hits.collect();
+    let spawn = |point: &SurfacePoint, direction: DVec3| Ray {
+        t_min: NEAREST,
+        ..point.spawn_ray(direction)
+    };
+    let mut random = Random(1);
+    let mut bounce = |point: &SurfacePoint| {
+        let side = if point.is_front { 1.0 } else { -1.0 };
+        (point.normal_g * side + random.direction() * 0.999).normalize()
+    };
+    let sun = DVec3::new(0.4, -0.3, 0.87).normalize();
+    let bounces = points.iter().map(|point| spawn(point, bounce(point)));
+    let bounces = bounces.collect();
+    let shadows = points.iter().map(|point| spawn(point, sun)).collect();
+    [camera, bounces, shadows]
+}
+
+/// Prints the rates of both programs for some rays; those to the sun ask only whether there is anything.
+fn compare(
+    scene: &Scene,
+    mut server: Option<&mut Server>,
+    scene_name: &str,
+    name: &str,
+    rays: &[Ray],
+) {
+    let is_any = name == "sun";
+    let question = if is_any { "any" } else { "closest" };
+    if let Some(server) = server.as_mut() {
+        server.rays(rays).expect("Embree takes rays");
+    }
+    let mut best = [f64::INFINITY; 3];
+    let mut hits = 0;
+    for _ in 0..TURNS {
+        let (seconds, count) = if is_any {
+            run(rays, |ray| scene.occluded(ray))
+        } else {
+            run(rays, |ray| scene.closest(ray).is_some())
+        };
+        (best[0], hits) = (best[0].min(seconds), count);
+        if let Some(server) = server.as_mut() {
+            let mut ask = |question| server.ask(question, THREADS).expect("Embree answers").0;
+            best[1] = best[1].min(ask(question));
+            if name == "camera" {
+                best[2] = best[2].min(ask("packets"));
+            }
+        }
+    }
+    let rate = |seconds: f64| rays.len() as f64 * THREADS as f64 / seconds / 1e6;
+    let share = 100.0 * hits as f64 / rays.len().max(1) as f64;
+    let same = server.map(|server| {
+        if is_any {
+            let (_, count) = server.ask("any", 1).expect("Embree answers");
+            100.0 - 100.0 * (count - hits as f64).abs() / rays.len().max(1) as f64
+        } else {
+            agreement(scene, server, rays)
+        }
+    });
+    print!("| {scene_name} | {name} | {:.2} | ", rate(best[0]));
+    if let Some(same) = same {
+        print!("{:.2} | {:.2} | ", rate(best[1]), best[1] / best[0]);
+        if best[2].is_finite() {
+            print!("{:.2}", rate(best[2]));
+        }
+        print!(" | {same:.2} % | ");
+    } else {
+        print!(" | | | | ");
+    }
+    println!("{share:.0} % |");
+}
+
+/// How many rays in a hundred find a hit at the same distance, or none, in both programs.
+fn agreement(scene: &Scene, server: &mut Server, rays: &[Ray]) -> f64 {
+    let theirs = server.distances().expect("Embree answers");
+    let same = rays.iter().zip(theirs).filter(|(ray, theirs)| {
+        let theirs = f64::from(*theirs);
+        match scene.closest(ray) {
+            Some(hit) => (hit.t - theirs).abs() <= 2e-3 + 1e-4 * hit.t,
+            None => theirs.is_infinite(),
+        }
+    });
+    100.0 * same.count() as f64 / rays.len().max(1) as f64
+}
+
+/// Asks all rays with two threads: the processor seconds of both together, and how many answers are yes.
+fn run(rays: &[Ray], query: impl Fn(&Ray) -> bool + Sync) -> (f64, usize) {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let start = thread_seconds();
+        let mut count = 0;
+        loop {
+            let from = next.fetch_add(CHUNK, Ordering::Relaxed);
+            let Some(rays) = rays.get(from..) else { break };
+            if rays.is_empty() {
+                break;
+            }
+            let chunk = &rays[..rays.len().min(CHUNK)];
+            count += chunk.iter().filter(|ray| query(ray)).count();
+        }
+        (thread_seconds() - start, count)
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(work)).collect();
+        threads.into_iter().fold((0.0, 0), |sum, thread| {
+            let (seconds, count) = thread.join().expect("the threads end");
+            (sum.0 + seconds, sum.1 + count)
+        })
+    })
+}
+
+/// Processor time of this thread, in seconds.
 fn thread_seconds() -> f64 {
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = text.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(
-        || START.elapsed().as_secs_f64(),
-        |nanoseconds| nanoseconds * 1e-9,
-    )
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
 /// Rays through the pixels in blocks of 8 × 8.
@@ -140,202 +261,4 @@ fn camera_rays(eye: DVec3, target: DVec3) -> Vec<Ray> {
             Ray::new(eye, (forward + (right * x + up * y) * 0.8).normalize())
         })
         .collect()
-}
-
-/// Segments of a branching skeleton: start, end, radius; and whether it bears leaves.
-fn skeleton(random: &mut Random, levels: u32) -> Vec<(DVec3, DVec3, f64, bool)> {
-    let mut segments = Vec::new();
-    let mut open = vec![(DVec3::ZERO, DVec3::Z, 4.0, 0.25, levels)];
-    while let Some((start, direction, length, radius, level)) = open.pop() {
-        let end = start + direction * length;
-        segments.push((start, end, radius, level <= 2));
-        if level == 0 {
-            continue;
-        }
-        for _ in 0..3 {
-            let next = (direction + random.direction() * 0.9 + DVec3::Z * 0.1).normalize();
-            let at = start.lerp(end, random.between(0.5, 1.0));
-            open.push((
-                at,
-                next,
-                length * random.between(0.6, 0.85),
-                radius * 0.6,
-                level - 1,
-            ));
-        }
-    }
-    segments
-}
-
-fn leaf_frame(random: &mut Random, from: DVec3, to: DVec3) -> (DVec3, DVec3, DVec3) {
-    let at = from.lerp(to, random.unit());
-    let along = random.direction();
-    let across = along.any_orthonormal_vector();
-    (at, along * 0.08, across * 0.04)
-}
-
-/// About a million triangles: tubes of eight sides, and leaves of two triangles.
-fn tree_mesh() -> Vec<Group> {
-    let mut random = Random(7);
-    let mut all = TriangleMesh::default();
-    for (start, end, radius, bears) in skeleton(&mut random, 8) {
-        let first = all.positions.len() as u32;
-        let axis = (end - start).normalize();
-        let (x, y) = axis.any_orthonormal_pair();
-        for k in 0..8 {
-            let angle = f64::from(k) * PI / 4.0;
-            let out = (x * angle.cos() + y * angle.sin()) * radius;
-            all.positions.extend([start + out, end + out * 0.7]);
-            let (a, b) = (first + 2 * k, first + 2 * ((k + 1) % 8));
-            all.triangles.extend([[a, b, a + 1], [b, b + 1, a + 1]]);
-        }
-        for _ in 0..if bears { 45 } else { 0 } {
-            let (at, along, across) = leaf_frame(&mut random, start, end);
-            let first = all.positions.len() as u32;
-            all.positions.extend([
-                at,
-                at + along * 0.5 + across,
-                at + along,
-                at + along * 0.5 - across,
-            ]);
-            all.triangles
-                .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-        }
-    }
-    vec![Group {
-        shapes: vec![placed(mesh(all), DAffine3::IDENTITY, 0)],
-        instances: vec![],
-    }]
-}
-
-/// A tree of frusta and parallelograms, about 20 000.
-fn tree_of_solids(seed: u64) -> Vec<PlacedShape> {
-    let mut random = Random(seed);
-    let mut shapes = Vec::new();
-    for (start, end, radius, bears) in skeleton(&mut random, 6) {
-        let axis = end - start;
-        let (x, y) = axis.normalize().any_orthonormal_pair();
-        let frame =
-            DAffine3::from_mat3_translation(DMat3::from_cols(x, y, axis.normalize()), start);
-        let branch = Shape::Frustum {
-            length: axis.length(),
-            base_radius: radius,
-            top_radius: radius * 0.7,
-            base_cap: false,
-            top_cap: false,
-        };
-        shapes.push(placed(branch, frame, 1));
-        for _ in 0..if bears { 18 } else { 0 } {
-            let (corner, edge_u, edge_v) = leaf_frame(&mut random, start, end);
-            let leaf = Shape::Parallelogram {
-                corner,
-                edge_u: edge_u * 3.0,
-                edge_v: edge_v * 3.0,
-            };
-            shapes.push(placed(leaf, DAffine3::IDENTITY, 2));
-        }
-    }
-    shapes
-}
-
-/// 2000 trees of four kinds, turned and scaled, on a plane.
-fn forest() -> Vec<Group> {
-    let mut groups: Vec<Group> = (0..4)
-        .map(|seed| Group {
-            shapes: tree_of_solids(seed + 1),
-            instances: vec![],
-        })
-        .collect();
-    let mut random = Random(3);
-    let instances = (0..2000).map(|k| {
-        let at = DVec3::new(
-            random.between(-90.0, 90.0),
-            random.between(-90.0, 90.0),
-            0.0,
-        );
-        let turn = DAffine3::from_rotation_z(random.between(0.0, 2.0 * PI));
-        let grow = DAffine3::from_scale(DVec3::splat(random.between(0.7, 1.3)));
-        instance(k % 4, DAffine3::from_translation(at) * turn * grow, k)
-    });
-    let instances = instances.collect();
-    groups.push(Group {
-        shapes: vec![placed(Shape::Plane, DAffine3::IDENTITY, 0)],
-        instances,
-    });
-    groups
-}
-
-fn cornell() -> Vec<Group> {
-    let wall = |corner: [f64; 3], edge_u: DVec3, edge_v: DVec3| {
-        let corner = DVec3::from_array(corner);
-        placed(
-            Shape::Parallelogram {
-                corner,
-                edge_u,
-                edge_v,
-            },
-            DAffine3::IDENTITY,
-            0,
-        )
-    };
-    let (x, y, z) = (DVec3::X * 5.5, DVec3::Y * 5.6, DVec3::Z * 5.5);
-    let block = |at: [f64; 2], turn: f64, length: f64| {
-        let place = DAffine3::from_translation(DVec3::new(at[0], at[1], 0.0));
-        let shape = Shape::Box {
-            half_x: 0.83,
-            half_y: 0.83,
-            length,
-        };
-        placed(shape, place * DAffine3::from_rotation_z(turn), 1)
-    };
-    let ball = placed(
-        mesh(icosphere(3, 0.7)),
-        DAffine3::from_translation(DVec3::new(1.8, 1.7, 2.4)),
-        2,
-    );
-    let shapes = vec![
-        wall([0.0, 0.0, 0.0], x, y),
-        wall([0.0, 0.0, 5.5], x, y),
-        wall([0.0, 5.6, 0.0], x, z),
-        wall([0.0, 0.0, 0.0], y, z),
-        wall([5.5, 0.0, 0.0], y, z),
-        wall([2.1, 2.3, 5.49], DVec3::X * 1.3, DVec3::Y),
-        block([3.7, 3.5], 0.3, 3.3),
-        block([1.8, 1.7], -0.3, 1.65),
-        ball,
-    ];
-    vec![Group {
-        shapes,
-        instances: vec![],
-    }]
-}
-
-/// A million instances: time to build, and bytes for each.
-fn many_instances() {
-    let mut groups = vec![Group {
-        shapes: tree_of_solids(1),
-        instances: vec![],
-    }];
-    let mut random = Random(4);
-    let instances = (0..1_000_000).map(|k| {
-        let at = DVec3::new(random.between(-2e3, 2e3), random.between(-2e3, 2e3), 0.0);
-        let turn = DAffine3::from_rotation_z(random.between(0.0, 2.0 * PI));
-        instance(0, DAffine3::from_translation(at) * turn, k)
-    });
-    let instances = instances.collect();
-    groups.push(Group {
-        shapes: vec![],
-        instances,
-    });
-    let description = describe(groups);
-    let start = Instant::now();
-    let scene = Scene::build(description).expect("the scene is valid");
-    let stats = scene.stats();
-    println!(
-        "a million instances: built in {:.2} s, {} bytes each",
-        start.elapsed().as_secs_f64(),
-        stats.instance_bytes / stats.instances
-    );
-    let rays = camera_rays(DVec3::new(-50.0, -50.0, 40.0), DVec3::ZERO);
-    rate("camera", &rays, |ray| scene.closest(ray).is_some());
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! boxes → halved at the median until ≤ BATCH are left → obvhs: locally ordered clustering, then reinsertion
 //!       → the CARRIED largest subtrees of each batch are the boxes of the batch above → … → one binary tree
-//!       → eight-wide: of a node's subtrees the one with the largest area is opened until there are eight
+//!       → eight-wide: the subtrees are shared out to nodes and leaves so that rays spend least, by the areas of the boxes
 //! ```
 //! Batches, and not one run of obvhs over everything, because its clustering joins only pairs that choose each other: boxes
 //! that are equal, nested, evenly spaced or in a geometric series can give one pair per pass, that is quadratic time and a
@@ -29,18 +29,25 @@
 //! Sources: [Meister2018a](crate::references#meister2018a), [Meister2018b](crate::references#meister2018b),
 //! [Benthin2024](crate::references#benthin2024).
 
-use super::node::{Bvh, Child, Node, WIDTH};
+use super::node::{Bvh, Child, Node};
+use super::simd::WIDTH;
 use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, reinsertion::ReinsertionOptimizer};
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Most boxes that obvhs gets at once.
 const BATCH: usize = 256;
 /// Subtrees that a batch hands to the one above.
 const CARRIED: usize = 32;
+/// What a leaf has room for. Boxes weigh whole parts of it, for leaves of up to eight boxes.
+const FULL: usize = 840;
+/// What it costs to look into a node, and into a leaf.
+const NODE_COST: f64 = 1.0;
+const LEAF_COST: f64 = 1.0;
 /// Fraction of the nodes of a batch that obvhs tries to move to better places; it repeats that with ever smaller fractions.
 const REINSERTED: f32 = 1.0;
 
@@ -86,21 +93,51 @@ impl Box3 {
     }
 }
 
-/// Builds a hierarchy over `boxes` (all finite) whose leaves hold at most `leaf_size` boxes.
+/// Builds a hierarchy over `boxes` (all finite) whose leaves hold at most `leaf_size` boxes; those numbered from `alone` on
+/// share a leaf with no other.
 ///
-/// Also returns the order in which the leaves list the boxes: item i of the hierarchy is box `order[i]`. O(n log n), for
-/// whatever boxes; the result does not depend on the number of threads.
+/// O(n log n), for whatever boxes; the result does not depend on the number of threads.
 #[must_use]
-pub fn build(boxes: &[Box3], leaf_size: usize) -> (Bvh, Vec<u32>) {
+pub fn build(boxes: &[Box3], leaf_size: usize, alone: usize) -> (Bvh, Leaves) {
     let mut bvh = Bvh::default();
-    let mut order = Vec::with_capacity(boxes.len());
+    let mut leaves = Leaves {
+        ends: Vec::new(),
+        order: Vec::with_capacity(boxes.len()),
+    };
     if !boxes.is_empty() {
         let items = boxes.par_iter().zip(0_u32..boxes.len() as u32);
         let mut items: Vec<_> = items.map(|(bounds, index)| (*bounds, index)).collect();
-        let tree = merge(cluster(&mut items));
-        store(tree, leaf_size.max(1), &mut bvh.nodes, &mut order);
+        let light = FULL.div_ceil(leaf_size.max(1));
+        let weigh = |index: u32| {
+            if (index as usize) < alone {
+                light
+            } else {
+                FULL
+            }
+        };
+        let tree = merge(cluster(&mut items, &weigh));
+        store(tree, &mut bvh.nodes, &mut leaves);
     }
-    (bvh, order)
+    (bvh, leaves)
+}
+
+/// What the leaves hold.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Leaves {
+    /// Where in `order` each leaf ends, and the next begins.
+    ends: Vec<u32>,
+    /// The numbers of the boxes, leaf after leaf.
+    pub order: Vec<u32>,
+}
+
+impl Leaves {
+    /// The part of `order` that is in a leaf.
+    #[must_use]
+    pub fn range(&self, leaf: u32) -> Range<usize> {
+        let leaf = leaf as usize;
+        let start = leaf.checked_sub(1).map_or(0, |before| self.ends[before]);
+        start as usize..self.ends[leaf] as usize
+    }
 }
 
 /// A box and its number.
@@ -109,8 +146,10 @@ type Entry = (Box3, u32);
 /// A box, or two subtrees and the box around them.
 struct Subtree {
     bounds: Box3,
-    /// Number of boxes in it.
-    count: usize,
+    /// Of the boxes in it, in parts of a [`FULL`] leaf.
+    weight: usize,
+    /// What rays spend in it at least if it takes up to 1, 2, … places of a node, up to a factor.
+    costs: [f64; WIDTH],
     content: Content,
 }
 
@@ -121,36 +160,58 @@ enum Content {
 }
 
 impl Subtree {
-    fn pair(left: Self, right: Self) -> Self {
+    fn item(&(bounds, index): &Entry, weight: usize) -> Self {
         Self {
-            bounds: left.bounds.union(&right.bounds),
-            count: left.count + right.count,
+            bounds,
+            weight,
+            costs: [bounds.half_area() * LEAF_COST; WIDTH],
+            content: Content::Item(index),
+        }
+    }
+
+    fn pair(left: Self, right: Self) -> Self {
+        let bounds = left.bounds.union(&right.bounds);
+        let weight = left.weight + right.weight;
+        let area = bounds.half_area();
+        let as_node = area * NODE_COST + split(&left, &right, WIDTH).0;
+        let as_leaf = area * LEAF_COST;
+        let mut costs = [as_node; WIDTH];
+        if weight <= FULL {
+            costs[0] = as_leaf.min(as_node);
+        }
+        for places in 2..=WIDTH {
+            costs[places - 1] = costs[places - 2].min(split(&left, &right, places).0);
+        }
+        Self {
+            bounds,
+            weight,
+            costs,
             content: Content::Pair(Box::new([left, right])),
         }
+    }
+
+    /// Whether it had better be a leaf, if it takes one place.
+    fn is_leaf(&self) -> bool {
+        let is_item = matches!(self.content, Content::Item(_));
+        is_item || (self.weight <= FULL && self.bounds.half_area() * LEAF_COST <= self.costs[0])
     }
 }
 
 /// Joins the items to at most half a batch of subtrees.
-fn cluster(items: &mut [Entry]) -> Vec<Subtree> {
+fn cluster(items: &mut [Entry], weigh: &(impl Fn(u32) -> usize + Sync)) -> Vec<Subtree> {
     let parts = if items.len() <= BATCH {
-        let item = |(bounds, index): &Entry| Subtree {
-            bounds: *bounds,
-            count: 1,
-            content: Content::Item(*index),
-        };
+        let item = |entry: &Entry| Subtree::item(entry, weigh(entry.1));
         items.iter().map(item).collect()
     } else {
         let [left, right] = halve(items);
-        let (mut parts, others) = rayon::join(|| cluster(left), || cluster(right));
+        let (mut parts, others) = rayon::join(|| cluster(left, weigh), || cluster(right, weigh));
         parts.extend(others);
         parts
     };
     if parts.len() <= BATCH / 2 {
         return parts;
     }
-    open(merge(parts), CARRIED, |part| {
-        (true, part.bounds.half_area())
-    })
+    open(merge(parts), CARRIED)
 }
 
 /// Splits at the median of the centroids along the axis where they differ most; where they are equal, by number.
@@ -268,16 +329,14 @@ fn balanced(mut parts: Vec<Subtree>) -> Subtree {
     parts.swap_remove(0)
 }
 
-/// Opens the pair that is worth most, again and again, until there are `most` subtrees or nothing but items.
-fn open(root: Subtree, most: usize, worth: impl Fn(&Subtree) -> (bool, f64)) -> Vec<Subtree> {
+/// Opens the largest pair, again and again, until there are `most` subtrees or nothing but items.
+fn open(root: Subtree, most: usize) -> Vec<Subtree> {
     let mut parts = vec![root];
     while parts.len() < most {
         let is_pair = |index: &usize| matches!(parts[*index].content, Content::Pair(_));
-        let by_worth = |a: &usize, b: &usize| {
-            let (a, b) = (worth(&parts[*a]), worth(&parts[*b]));
-            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-        };
-        let Some(best) = (0..parts.len()).filter(is_pair).max_by(by_worth) else {
+        let area = |index: &usize| parts[*index].bounds.half_area();
+        let pairs = (0..parts.len()).filter(is_pair);
+        let Some(best) = pairs.max_by(|a, b| area(a).total_cmp(&area(b))) else {
             break;
         };
         if let Content::Pair(pair) = parts.remove(best).content {
@@ -287,27 +346,68 @@ fn open(root: Subtree, most: usize, worth: impl Fn(&Subtree) -> (bool, f64)) -> 
     parts
 }
 
-/// Appends the nodes of a tree, its root first, and its items; returns the number of the root.
-fn store(tree: Subtree, leaf_size: usize, nodes: &mut Vec<Node>, order: &mut Vec<u32>) -> u32 {
+/// The best way to share at least two places of a node between two subtrees: what it costs, and how many the left one gets.
+fn split(left: &Subtree, right: &Subtree, places: usize) -> (f64, usize) {
+    let cost = |share: usize| left.costs[share - 1] + right.costs[places - share - 1];
+    // Where it makes no difference, half and half.
+    let mut best = (cost(places / 2), places / 2);
+    for share in 1..places {
+        if cost(share) < best.0 {
+            best = (cost(share), share);
+        }
+    }
+    best
+}
+
+/// Shares `places` places of a node among the parts of a subtree that is not a leaf.
+fn share_places(part: Subtree, places: usize, parts: &mut Vec<Subtree>) {
+    match part.content {
+        Content::Pair(pair) => {
+            let [left, right] = *pair;
+            let (_, share) = split(&left, &right, places);
+            for (part, places) in [(left, share), (right, places - share)] {
+                place(part, places, parts);
+            }
+        }
+        Content::Item(_) => parts.push(part),
+    }
+}
+
+/// Gives a subtree at most so many places: the least of them that cost as little, but more where one costs the same.
+fn place(part: Subtree, places: usize, parts: &mut Vec<Subtree>) {
+    let is_divided = |places: usize| {
+        places > 1
+            && matches!(&part.content, Content::Pair(pair)
+                if split(&pair[0], &pair[1], places).0 <= part.costs[places - 2])
+    };
+    match (1..=places).rev().find(|places| is_divided(*places)) {
+        Some(places) => share_places(part, places, parts),
+        None => parts.push(part),
+    }
+}
+
+/// Appends the nodes of a tree, its root first, and its leaves; returns the root.
+fn store(tree: Subtree, nodes: &mut Vec<Node>, leaves: &mut Leaves) -> Child {
     let number = nodes.len();
     nodes.push(Node::EMPTY);
-    // Places that are left when all parts fit into leaves are filled by opening further, which costs no memory and tests
-    // fewer items.
-    let worth = |part: &Subtree| (part.count > leaf_size, part.bounds.half_area());
-    let children = open(tree, WIDTH, worth);
+    let mut children = Vec::with_capacity(WIDTH);
+    if tree.is_leaf() {
+        children.push(tree);
+    } else {
+        share_places(tree, WIDTH, &mut children);
+    }
     for (index, part) in children.into_iter().enumerate() {
         let bounds = part.bounds;
-        let child = if part.count <= leaf_size {
-            let (first, count) = (order.len() as u32, part.count as u32);
-            list(part, order);
-            Child { first, count }
+        let child = if part.is_leaf() {
+            list(part, &mut leaves.order);
+            leaves.ends.push(leaves.order.len() as u32);
+            Child(leaves.ends.len() as u32 - 1)
         } else {
-            let first = store(part, leaf_size, nodes, order);
-            Child { first, count: 0 }
+            store(part, nodes, leaves)
         };
         nodes[number].set(index, &bounds, child);
     }
-    number as u32
+    Child::node(number)
 }
 
 /// Appends the items of a tree.
@@ -338,7 +438,7 @@ mod tests {
     }
 
     /// Checks that every box stands in exactly one leaf, inside the boxes of all nodes above, and returns the depth.
-    fn validate(bvh: &Bvh, order: &[u32], boxes: &[Box3], leaf_size: usize) -> usize {
+    fn validate(bvh: &Bvh, leaves: &Leaves, boxes: &[Box3], leaf_size: usize) -> usize {
         let mut seen = vec![false; boxes.len()];
         let mut deepest = 0;
         let everything = Box3 {
@@ -362,13 +462,14 @@ mod tests {
                 };
                 assert!(holds(&outer, &inner));
                 let child = bvh.nodes[node].children[lane];
-                if child.count == 0 {
-                    assert!(child.first as usize > node);
-                    open.push((child.first as usize, depth + 1, inner));
+                if let Some(below) = child.as_node() {
+                    assert!(below > node);
+                    open.push((below, depth + 1, inner));
                 } else {
-                    assert!(child.count as usize <= leaf_size);
-                    for item in child.first..child.first + child.count {
-                        let index = order[item as usize] as usize;
+                    let items = leaves.range(child.0);
+                    assert!(items.len() <= leaf_size);
+                    for item in items {
+                        let index = leaves.order[item] as usize;
                         assert!(holds(&inner, &boxes[index]) && !seen[index]);
                         seen[index] = true;
                     }
@@ -384,12 +485,12 @@ mod tests {
         for count in [1, 2, 7, 8, 9, 64, 1000, 20_000] {
             for leaf_size in [1, 4, 8] {
                 let boxes = boxes(count);
-                let (bvh, order) = build(&boxes, leaf_size);
-                let depth = validate(&bvh, &order, &boxes, leaf_size);
+                let (bvh, leaves) = build(&boxes, leaf_size, boxes.len());
+                let depth = validate(&bvh, &leaves, &boxes, leaf_size);
                 assert!(depth < 20, "{count}: {depth}");
             }
         }
-        assert_eq!(build(&[], 4), (Bvh::default(), Vec::new()));
+        assert_eq!(build(&[], 4, 0), (Bvh::default(), Leaves::default()));
     }
 
     /// `count` cubes with the given centre along x and half an edge.
@@ -435,8 +536,8 @@ mod tests {
             ("of all magnitudes", cubes(10_000, whimsical)),
             ("huge", cubes(1000, |k| (1e35 * k as f32, 1e38))),
         ] {
-            let (bvh, order) = build(&boxes, 4);
-            let depth = validate(&bvh, &order, &boxes, 4);
+            let (bvh, leaves) = build(&boxes, 4, boxes.len());
+            let depth = validate(&bvh, &leaves, &boxes, 4);
             assert!(depth <= 24, "{name}: {depth}");
             assert!(
                 bvh.nodes.len() <= boxes.len() / 2,
@@ -454,7 +555,7 @@ mod tests {
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| build(&boxes, 4))
+            pool.install(|| build(&boxes, 4, boxes.len()))
         };
         let alone = with(1);
         assert!(alone == with(2) && alone == with(3));

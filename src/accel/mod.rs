@@ -2,18 +2,23 @@
 //!
 //! ```text
 //! boxes → build (by obvhs, then 8-wide) → Bvh { nodes } + order of the boxes in the leaves
-//! Bvh::traverse(ray, leaf) → calls `leaf` with ranges of that order, nearest boxes first
+//! Bvh::relabel → the leaves get the names that their owner knows them by
+//! walk(Walking, Visitor) → shows the visitor the leaves that a ray meets, nearest first, in hierarchies within hierarchies
+//! FlatBlock::candidates → which of eight triangles and parallelograms a ray may hit
 //! ```
 //! Boxes and box tests are `f32`. They are conservative only if the caller widens the boxes by what rounding the ray to
 //! `f32` can do; [`crate::scene`] does so by normalising every group to the same size.
 
 mod build;
 mod extreme;
+mod flats;
 mod node;
+mod simd;
 mod stack;
 mod traverse;
 
-pub use build::{Box3, build};
+pub use build::{Box3, Leaves, build};
+pub use flats::{FlatBlock, FlatRay};
 pub use node::Bvh;
-pub use stack::TraversalStack;
-pub use traverse::{BoxRay, Step};
+pub use simd::{Kernel, Lanes, WIDTH, dispatch};
+pub use traverse::{BoxRay, Step, Visitor, Walking, walk};

@@ -1,13 +1,11 @@
-//! Walking a hierarchy along a ray.
+//! Walking hierarchies along a ray, from group to group, in one loop.
 
-use super::node::{Bvh, Node, WIDTH};
+use super::node::{Bvh, Child, Node};
+use super::simd::{Lanes, WIDTH};
 use super::stack::{TraversalStack, Waiting};
 use crate::math::tolerance::BOX_SLACK;
 use glam::DVec3;
-use std::ops::{ControlFlow, Range, RangeInclusive};
-
-/// What a leaf answers: go on looking, as far as this parameter and no farther, or stop.
-pub type Step = ControlFlow<(), f32>;
+use std::ops::ControlFlow;
 
 /// A ray prepared for box tests in `f32`.
 ///
@@ -18,27 +16,29 @@ pub struct BoxRay {
     origin: [f32; 3],
     inverse: [f32; 3],
     /// Index of the plane where the ray enters a box, per axis; it leaves by the opposite one.
-    near: [usize; 3],
+    near: [u8; 3],
     /// Box parameter per unit of the ray's own parameter.
     scale: f64,
 }
 
 impl BoxRay {
-    /// Prepares the line `origin + t · direction`; `direction` must not be zero.
+    /// Prepares the line `origin + t · direction`, given 1 / `direction`, which must not be zero.
+    #[inline]
     #[must_use]
-    pub fn new(origin: DVec3, direction: DVec3) -> Self {
+    pub fn new(origin: DVec3, direction: DVec3, inverse: DVec3) -> Self {
         let scale = direction.abs().max_element();
-        let unit = (direction / scale).to_array();
+        // A component of ±0 gives ±∞, which the box test knows how to read.
+        let inverse = inverse.to_array();
         Self {
             origin: origin.to_array().map(|x| x as f32),
-            // A component of ±0 gives ±∞, which the box test knows how to read.
-            inverse: unit.map(|x| 1.0 / x as f32),
+            inverse: inverse.map(|x| (x * scale) as f32),
             near: std::array::from_fn(|axis| {
-                if unit[axis].is_sign_negative() {
-                    axis + 3
-                } else {
-                    axis
-                }
+                axis as u8
+                    + if inverse[axis].is_sign_negative() {
+                        3
+                    } else {
+                        0
+                    }
             }),
             scale,
         }
@@ -52,107 +52,141 @@ impl BoxRay {
         ((t * self.scale) as f32 * BOX_SLACK).min(f32::MAX)
     }
 
-    /// The same, rounded down and at least 0.
+    /// The same, rounded down and at least 0 (and not -0, whose bits would be the largest).
     #[inline]
     #[must_use]
     pub fn start(&self, t: f64) -> f32 {
-        ((t * self.scale) as f32 / BOX_SLACK).clamp(0.0, f32::MAX)
+        ((t * self.scale) as f32 / BOX_SLACK).clamp(0.0, f32::MAX) + 0.0
     }
 }
 
-impl Bvh {
-    /// Calls `leaf` with the item ranges of all leaves whose boxes the ray meets in `part` (from a result of
-    /// [`BoxRay::start`] to one of [`BoxRay::limit`]), roughly from near to far. `leaf` may shorten the limit or stop the walk.
-    ///
-    /// The walk leaves `stack` as it found it; `leaf` gets it for walks through hierarchies nested in this one.
-    pub fn traverse(
-        &self,
-        ray: &BoxRay,
-        part: RangeInclusive<f32>,
-        stack: &mut TraversalStack,
-        mut leaf: impl FnMut(Range<usize>, &mut TraversalStack) -> Step,
-    ) -> ControlFlow<()> {
-        if self.nodes.is_empty() {
-            return ControlFlow::Continue(());
-        }
-        let (start, mut limit) = part.into_inner();
-        let bottom = stack.len();
-        let mut next = Waiting::default();
-        loop {
-            if next.count == 0 {
-                self.nodes[next.first as usize].push_entered(ray, start, limit, stack);
-            } else {
-                let first = next.first as usize;
-                match leaf(first..first + next.count as usize, stack) {
-                    ControlFlow::Continue(nearer) => limit = nearer,
-                    ControlFlow::Break(()) => {
-                        stack.truncate(bottom);
-                        return ControlFlow::Break(());
-                    }
-                }
-            }
+/// A hierarchy that is being walked: with which ray, and in which part of it (from a result of [`BoxRay::start`] to one of
+/// [`BoxRay::limit`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Walking<'b> {
+    /// The hierarchy.
+    pub bvh: &'b Bvh,
+    /// The ray in its frame.
+    pub ray: BoxRay,
+    /// What ends before this is left out.
+    pub start: f32,
+    /// What begins after this is left out.
+    pub limit: f32,
+}
 
-            // Take the nearest box that is still worth a look.
-            loop {
-                if stack.len() == bottom {
-                    return ControlFlow::Continue(());
+/// What a leaf answers.
+#[expect(clippy::large_enum_variant, reason = "it is inlined and never stored")]
+pub enum Step<'b> {
+    /// Go on looking, as far as this parameter and no farther.
+    Continue(f32),
+    /// Walk another hierarchy that is in the leaf, then come back.
+    Enter(Walking<'b>),
+    /// Stop.
+    Stop,
+}
+
+/// Who wants to know what a ray meets. The functions should be `#[inline(always)]`, see [`Kernel`](super::Kernel).
+pub trait Visitor<'b> {
+    /// Whether near boxes should come before far ones.
+    const NEAREST_FIRST: bool;
+    /// Is shown a leaf that the ray meets, as [`Bvh::relabel`] called it.
+    fn leaf<V: Lanes>(&mut self, leaf: u32, limit: f32) -> Step<'b>;
+    /// Is told that the hierarchy entered last is done; answers with the one around it.
+    fn leave(&mut self) -> Walking<'b>;
+}
+
+/// Shows the visitor all leaves whose boxes the ray meets, roughly from near to far.
+#[inline(always)]
+pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
+    mut walking: Walking<'b>,
+    visitor: &mut W,
+) -> ControlFlow<()> {
+    let mut stack = TraversalStack::new();
+    let mut next = Child::ROOT;
+    loop {
+        if let Some(number) = next.as_node() {
+            if let Some(node) = walking.bvh.nodes.get(number)
+                && let Some(nearest) = node.push_entered::<V, W>(&walking, &mut stack)
+            {
+                next = nearest;
+                continue;
+            }
+        } else {
+            match visitor.leaf::<V>(next.0, walking.limit) {
+                Step::Continue(nearer) => walking.limit = nearer,
+                Step::Enter(inner) => {
+                    stack.push(Waiting::new(0.0, Child::LEAVE));
+                    walking = inner;
+                    next = Child::ROOT;
+                    continue;
                 }
-                next = stack.pop();
-                if next.enter <= limit {
-                    break;
-                }
+                Step::Stop => return ControlFlow::Break(()),
             }
         }
+
+        // Take the nearest box that is still worth a look.
+        next = loop {
+            let Some(waiting) = stack.pop() else {
+                return ControlFlow::Continue(());
+            };
+            if waiting.child() == Child::LEAVE {
+                walking = visitor.leave();
+            } else if waiting.enter() <= walking.limit {
+                break waiting.child();
+            }
+        };
     }
 }
 
 impl Node {
-    /// Pushes the children that the ray meets between `start` and `limit`, the farthest first.
-    #[inline]
-    fn push_entered(&self, ray: &BoxRay, start: f32, limit: f32, stack: &mut TraversalStack) {
+    /// Answers with one child that the ray meets, the nearest if the visitor cares, and pushes the others.
+    #[inline(always)]
+    fn push_entered<'b, V: Lanes, W: Visitor<'b>>(
+        &self,
+        walking: &Walking<'b>,
+        stack: &mut TraversalStack,
+    ) -> Option<Child> {
+        let ray = &walking.ray;
         // Where the ray is inside all three slabs. A NaN, from 0 · ∞ for a ray in the plane of a face, compares false and
         // changes nothing, so such a ray is inside that slab.
-        let mut enter = [start; WIDTH];
-        let mut exit = [limit; WIDTH];
+        let mut enter = V::splat(walking.start);
+        let mut exit = V::splat(f32::INFINITY);
         for axis in 0..3 {
-            let near = &self.planes[ray.near[axis]];
-            let far = &self.planes[(ray.near[axis] + 3) % 6];
-            let (origin, inverse) = (ray.origin[axis], ray.inverse[axis]);
-            for lane in 0..WIDTH {
-                let t = (near[lane] - origin) * inverse;
-                enter[lane] = if t > enter[lane] { t } else { enter[lane] };
-                let t = (far[lane] - origin) * inverse * BOX_SLACK;
-                exit[lane] = if t < exit[lane] { t } else { exit[lane] };
-            }
+            let near = usize::from(ray.near[axis]);
+            let far = 2 * axis + 3 - near;
+            let (origin, inverse) = (V::splat(ray.origin[axis]), V::splat(ray.inverse[axis]));
+            let near = V::load(&self.planes[near]).sub(origin).mul(inverse);
+            let far = V::load(&self.planes[far]).sub(origin).mul(inverse);
+            enter = near.max(enter);
+            exit = far.min(exit);
         }
+        let exit = exit.mul(V::splat(BOX_SLACK)).min(V::splat(walking.limit));
+        let mut lanes = enter.at_most(exit);
 
-        let mut lanes = 0_u32;
-        for lane in 0..WIDTH {
-            lanes |= u32::from(enter[lane] <= exit[lane]) << lane;
+        if lanes == 0 {
+            return None;
         }
-
-        // Sort the entered children in; there are rarely more than three.
-        let mut entered = [Waiting::default(); WIDTH];
-        let mut count = 0;
+        let lane = lanes.trailing_zeros() as usize % WIDTH;
+        lanes &= lanes - 1;
+        if lanes == 0 {
+            return Some(self.children[lane]);
+        }
+        let enters = enter.store();
+        let mut nearest = Waiting::new(enters[lane], self.children[lane]);
+        let mut fresh = 0;
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize % WIDTH;
             lanes &= lanes - 1;
-            let child = self.children[lane];
-            let waiting = Waiting {
-                enter: enter[lane],
-                first: child.first,
-                count: child.count,
-            };
-            let mut at = count;
-            while at > 0 && entered[at - 1].enter < waiting.enter {
-                entered[at] = entered[at - 1];
-                at -= 1;
+            let mut other = Waiting::new(enters[lane], self.children[lane]);
+            if W::NEAREST_FIRST {
+                (nearest, other) = (nearest.min(other), nearest.max(other));
             }
-            entered[at] = waiting;
-            count += 1;
+            stack.push(other);
+            fresh += 1;
+            if W::NEAREST_FIRST {
+                stack.settle(fresh);
+            }
         }
-        for waiting in &entered[..count] {
-            stack.push(*waiting);
-        }
+        Some(nearest.child())
     }
 }

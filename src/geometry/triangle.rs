@@ -51,6 +51,14 @@ impl Shear {
         }
     }
 
+    /// The start of the line and the axes x, y and z of the sheared frame in that order, then the shear of x and y per unit of z
+    /// and 1 / (z of the direction).
+    #[inline]
+    #[must_use]
+    pub fn parts(&self) -> ([f64; 3], [usize; 3], [f64; 3]) {
+        (self.origin, self.axes, self.shear)
+    }
+
     /// A point in the frame where the line is the z axis; z is still in units of the coordinate.
     #[inline]
     fn apply(&self, point: &[f64; 3]) -> [f64; 3] {
@@ -84,7 +92,9 @@ pub fn intersect_triangle(
     corners: [&[f64; 3]; 3],
     interval: Interval,
 ) -> Option<FlatHit> {
-    let [a, b, c] = corners.map(|corner| shear.apply(corner));
+    // Not by `map`, which costs a call for each corner in the inner loop of everything.
+    let [a, b, c] = corners;
+    let (a, b, c) = (shear.apply(a), shear.apply(b), shear.apply(c));
 
     // The weight of each corner is the edge function of the opposite edge.
     let weights = [edge(b, c), edge(c, a), edge(a, b)];

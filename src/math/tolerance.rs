@@ -56,6 +56,18 @@ pub const BOX_SLACK: f32 = 1.0 + 6.0 * f32::EPSILON;
 /// [`crate::scene`].
 pub const BOX_PADDING: f32 = 1.0 / 512.0;
 
+/// How far beside a triangle or parallelogram a ray may pass, in the normalised units of a group, and still count as a candidate
+/// for the exact test, per length of its two edges.
+///
+/// With coordinates up to 2¹³ and directions whose largest component is 1, the sheared corner is off by at most 2⁻⁹, which
+/// times the edges makes 2⁻⁸; the roundings of the sheared edges, times the distance, add 2⁻⁷, those of the products 2⁻⁷. Half of it would
+/// still be enough; ten times larger only lets the exact test refuse more. Used by [`crate::accel`].
+pub const FLAT_MARGIN: f32 = 1.0 / 32.0;
+
+/// The same along the ray, in normalised units: roundings of corner and start, each at most 2⁻¹², and what the edges may
+/// add. Ten times larger costs nothing that could be measured. Used by [`crate::accel`].
+pub const FLAT_DEPTH_MARGIN: f32 = 1.0 / 64.0;
+
 /// By how much the side and the caps of a frustum overlap at the rim, in radii and lengths.
 ///
 /// A ray through the rim sees the side end and the cap begin with different roundings; without an overlap it could slip

@@ -7,7 +7,7 @@ use super::group::{
 use super::placement::Placement;
 use super::plan::{PlannedGroup, PlannedShape, primitive_count};
 use super::validate::{check_bounds, check_shape};
-use crate::accel::{self, Box3};
+use crate::accel::{self, Box3, FlatBlock, Leaves};
 use crate::geometry::Shape;
 use crate::geometry::reduce::Reduced;
 use crate::material::Material;
@@ -16,8 +16,8 @@ use crate::math::tolerance::{BOX_PADDING, MIN_EXTENT};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
-/// Boxes per leaf in a group without instances, and with them. An instance is dear to enter, a primitive cheap to test.
-const LEAF_SIZES: [usize; 2] = [4, 4];
+/// Triangles and parallelograms per leaf: as many as are tested at once.
+const LEAF_SIZE: usize = accel::WIDTH;
 
 /// Builds a group whose instances refer to groups in `built`.
 pub(super) fn bake(
@@ -44,13 +44,12 @@ fn empty_group(frame: GroupFrame) -> Group {
     Group {
         frame,
         bounds: Bounds3::EMPTY,
-        vertices: Vec::new(),
         triangles: Vec::new(),
         quads: Vec::new(),
         solids: Vec::new(),
         instances: Vec::new(),
         matrices: Vec::new(),
-        items: Vec::new(),
+        blocks: Vec::new(),
         places: Vec::new(),
         shapes: Vec::new(),
         meshes: Vec::new(),
@@ -239,16 +238,12 @@ fn store_mesh(
     let Shape::Mesh(mesh) = planned.shape else {
         return;
     };
-    let offset = group.vertices.len() as u32;
-    group
-        .vertices
-        .extend(corners.iter().map(|corner| corner.to_array()));
     for (index, triangle) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
         // Without area it can neither be hit nor shine.
         if (b - a).cross(c - a) != DVec3::ZERO {
             let number = record.first + index as u32;
-            let corners = triangle.map(|corner| corner + offset);
+            let corners = [a, b, c].map(|corner| corner.to_array());
             group.triangles.push(Triangle { corners, number });
         }
     }
@@ -299,8 +294,9 @@ fn store_instances(
 /// Builds the hierarchy and puts everything into the order of its leaves.
 fn arrange(group: &mut Group, built: &[Group]) {
     let boxes = boxes(group, built);
-    let leaf_size = LEAF_SIZES[usize::from(!group.instances.is_empty())];
-    let (bvh, order) = accel::build(&boxes, leaf_size);
+    // Curved shapes and instances are dear to look at: each has a box of its own.
+    let alone = group.triangles.len() + group.quads.len();
+    let (bvh, leaves) = accel::build(&boxes, LEAF_SIZE, alone);
     group.bvh = bvh;
     group.bounds = boxes.iter().fold(Bounds3::EMPTY, |bounds, part| {
         let corner = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
@@ -318,60 +314,53 @@ fn arrange(group: &mut Group, built: &[Group]) {
         old.0.len() + old.1.len(),
         old.0.len() + old.1.len() + old.2.len(),
     ];
-    group.items.reserve_exact(order.len());
-    for index in order {
-        let index = index as usize;
-        let (item, number) = if index < ends[0] {
+    let mut items = Vec::with_capacity(leaves.order.len());
+    for index in &leaves.order {
+        let index = *index as usize;
+        let (kind, number) = if index < ends[0] {
             group.triangles.push(old.0[index]);
-            (
-                ItemKind::Triangle(group.triangles.len() - 1),
-                Some(old.0[index].number),
-            )
+            let kind = ItemKind::Triangle(group.triangles.len() - 1);
+            (kind, Some(old.0[index].number))
         } else if index < ends[1] {
-            group.quads.push(old.1[index - ends[0]]);
-            (
-                ItemKind::Quad(group.quads.len() - 1),
-                Some(old.1[index - ends[0]].number),
-            )
+            let quad = old.1[index - ends[0]];
+            group.quads.push(quad);
+            (ItemKind::Quad(group.quads.len() - 1), Some(quad.number))
         } else if index < ends[2] {
-            group.solids.push(old.2[index - ends[1]]);
-            (
-                ItemKind::Solid(group.solids.len() - 1),
-                Some(old.2[index - ends[1]].number),
-            )
+            let solid = old.2[index - ends[1]];
+            group.solids.push(solid);
+            (ItemKind::Solid(group.solids.len() - 1), Some(solid.number))
         } else {
             group.instances.push(old.3[index - ends[2]]);
             (ItemKind::Instance(group.instances.len() - 1), None)
         };
-        let item = Item::new(item);
-        group.items.push(item);
+        let item = Item::new(kind);
+        items.push(item);
         if let Some(number) = number {
             group.places[number as usize] = Some(item);
         }
     }
-    renumber_vertices(group);
+    name_leaves(group, &leaves, &items);
 }
 
-/// Puts the corners into the order in which the triangles mention them, so that what is tested together lies together.
-/// Corners that no triangle has are dropped.
-fn renumber_vertices(group: &mut Group) {
-    const NEW: u32 = u32::MAX;
-    let mut places = vec![NEW; group.vertices.len()];
-    let mut vertices = Vec::with_capacity(group.vertices.len());
-    for corner in group
-        .triangles
-        .iter_mut()
-        .flat_map(|triangle| &mut triangle.corners)
-    {
-        let place = &mut places[*corner as usize];
-        if *place == NEW {
-            *place = vertices.len() as u32;
-            vertices.push(group.vertices[*corner as usize]);
+/// Calls each leaf by the item it holds; triangles and parallelograms, up to eight, are packed into a block for that.
+fn name_leaves(group: &mut Group, leaves: &Leaves, items: &[Item]) {
+    let mut bvh = std::mem::take(&mut group.bvh);
+    bvh.relabel(|leaf| {
+        let items = &items[leaves.range(leaf)];
+        if let [item] = items
+            && !matches!(item.kind(), ItemKind::Triangle(_) | ItemKind::Quad(_))
+        {
+            return item.bits();
         }
-        *corner = *place;
-    }
-    vertices.shrink_to_fit();
-    group.vertices = vertices;
+        let mut block = FlatBlock::EMPTY;
+        for (lane, item) in items.iter().enumerate() {
+            let (corner, edges) = group.parallelogram(item.kind());
+            block.set(lane, corner, edges, item.bits());
+        }
+        group.blocks.push(block);
+        Item::new(ItemKind::Block(group.blocks.len() - 1)).bits()
+    });
+    group.bvh = bvh;
 }
 
 /// Numbers the primitives of the instances after the group's own, in the order of the leaves.
@@ -392,7 +381,7 @@ fn boxes(group: &Group, built: &[Group]) -> Vec<Box3> {
     let triangles = group
         .triangles
         .par_iter()
-        .map(|triangle| Bounds3::of(group.corners(triangle)));
+        .map(|triangle| Bounds3::of(triangle.corners()));
     let quads = group.quads.par_iter().map(|quad| {
         let [u, v] = quad.edges;
         Bounds3::of([

@@ -216,7 +216,7 @@ impl Emitter {
         };
         let (area, form) = match kind {
             ItemKind::Triangle(index) => {
-                let corners = group.corners(&group.triangles[index]);
+                let corners = group.triangles[index].corners();
                 let [a, b, c] = corners.map(|corner| to_world.transform_point3(corner));
                 let cross = (b - a).cross(c - a);
                 let normal = cross.normalize_or_zero() * sign;
@@ -247,7 +247,7 @@ impl Emitter {
                     }
                 }
             }
-            ItemKind::Instance(_) => return None,
+            ItemKind::Instance(_) | ItemKind::Block(_) => return None,
         };
         let (material, organ) = (shape.material, shape.organ);
         (area > 0.0).then_some(Self {

@@ -2,7 +2,7 @@
 
 use super::description::{MaterialId, OrganId};
 use super::placement::Placement;
-use crate::accel::Bvh;
+use crate::accel::{Bvh, FlatBlock};
 use crate::geometry::TriangleMesh;
 use crate::geometry::unit::UnitShape;
 use crate::math::Bounds3;
@@ -44,21 +44,20 @@ pub(super) struct Group {
     pub(super) frame: GroupFrame,
     /// The box of everything in it, widened like all stored boxes; empty if it holds nothing.
     pub(super) bounds: Bounds3,
-    /// Corners of triangles, in the order in which the leaves mention them.
-    pub(super) vertices: Vec<[f64; 3]>,
     pub(super) triangles: Vec<Triangle>,
     pub(super) quads: Vec<Quad>,
     pub(super) solids: Vec<Solid>,
     pub(super) instances: Vec<PlacedGroup>,
     /// Of instances that are stretched unevenly.
     pub(super) matrices: Vec<DMat3>,
-    /// What the leaves of `bvh` hold, in their order.
-    pub(super) items: Vec<Item>,
+    /// Triangles and parallelograms once more, by leaves, for the test of eight at once.
+    pub(super) blocks: Vec<FlatBlock>,
     /// Where each primitive of this group is stored, by number; `None` if it has no area.
     pub(super) places: Vec<Option<Item>>,
     /// Sorted by the number of the first primitive.
     pub(super) shapes: Vec<ShapeRecord>,
     pub(super) meshes: Vec<MeshShading>,
+    /// Its leaves are called by the [`Item`] that each holds: a block, a solid or an instance.
     pub(super) bvh: Bvh,
     /// Primitives of this group and, once per instance, of all groups below; numbers of primitives are below it.
     pub(super) total: u64,
@@ -66,7 +65,8 @@ pub(super) struct Group {
     pub(super) is_opaque: bool,
 }
 
-/// A stored thing: a kind in the upper two bits, an index into the list of that kind in the others.
+/// A stored thing: a kind in the upper three bits, an index into the list of that kind in the others. The highest bit is set
+/// for parallelograms only, as [`FlatBlock`] wants it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item(std::num::NonZeroU32);
 
@@ -77,42 +77,66 @@ pub(super) enum ItemKind {
     Quad(usize),
     Solid(usize),
     Instance(usize),
+    Block(usize),
 }
 
 impl Item {
     /// How many things of one kind a group may hold.
-    pub(super) const LIMIT: usize = (1 << 30) - 1;
+    pub(super) const LIMIT: usize = (1 << 29) - 1;
 
     pub(super) fn new(kind: ItemKind) -> Self {
         let (tag, index) = match kind {
             ItemKind::Triangle(index) => (0, index),
-            ItemKind::Quad(index) => (1, index),
-            ItemKind::Solid(index) => (2, index),
-            ItemKind::Instance(index) => (3, index),
+            ItemKind::Solid(index) => (1, index),
+            ItemKind::Instance(index) => (2, index),
+            ItemKind::Block(index) => (3, index),
+            ItemKind::Quad(index) => (4, index),
         };
         // One is added so that no item is 0.
-        let bits = tag << 30 | (index as u32 + 1);
-        Self(std::num::NonZeroU32::new(bits).expect("invariant: index + 1 is below 2^30"))
+        let bits = tag << 29 | (index as u32 + 1);
+        Self(std::num::NonZeroU32::new(bits).expect("invariant: index + 1 is below 2^29"))
+    }
+
+    /// The item as a number that is not 0.
+    #[inline]
+    pub(super) fn bits(self) -> u32 {
+        self.0.get()
+    }
+
+    /// The item that has these bits, if any has.
+    #[inline]
+    pub(super) fn from_bits(bits: u32) -> Option<Self> {
+        std::num::NonZeroU32::new(bits).map(Self)
     }
 
     #[inline]
     pub(super) fn kind(self) -> ItemKind {
         let bits = self.0.get();
-        let index = (bits & 0x3fff_ffff) as usize - 1;
-        match bits >> 30 {
+        let index = (bits & 0x1fff_ffff).wrapping_sub(1) as usize;
+        match bits >> 29 {
             0 => ItemKind::Triangle(index),
-            1 => ItemKind::Quad(index),
-            2 => ItemKind::Solid(index),
-            _ => ItemKind::Instance(index),
+            1 => ItemKind::Solid(index),
+            2 => ItemKind::Instance(index),
+            3 => ItemKind::Block(index),
+            _ => ItemKind::Quad(index),
         }
     }
 }
 
-/// A triangle of a mesh: indices of its corners, and its number.
+/// A triangle of a mesh: its corners, and its number.
+///
+/// Corners are not shared with the neighbours: a ray wants one triangle, seldom several, and waits for memory only once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Triangle {
-    pub(super) corners: [u32; 3],
+    pub(super) corners: [[f64; 3]; 3],
     pub(super) number: u32,
+}
+
+impl Triangle {
+    /// The corners as vectors.
+    pub(super) fn corners(&self) -> [DVec3; 3] {
+        self.corners.map(DVec3::from_array)
+    }
 }
 
 /// A parallelogram.
@@ -189,23 +213,27 @@ impl Group {
         instance.placement.map(&self.matrices)
     }
 
-    /// The corners of a triangle.
-    pub(super) fn corners(&self, triangle: &Triangle) -> [DVec3; 3] {
-        triangle
-            .corners
-            .map(|corner| DVec3::from_array(self.vertices[corner as usize]))
+    /// A corner of a triangle or parallelogram and the two edges from there; zeros for anything else.
+    pub(super) fn parallelogram(&self, kind: ItemKind) -> (DVec3, [DVec3; 2]) {
+        match kind {
+            ItemKind::Triangle(index) => {
+                let [a, b, c] = self.triangles[index].corners();
+                (a, [b - a, c - a])
+            }
+            ItemKind::Quad(index) => (self.quads[index].corner, self.quads[index].edges),
+            _ => (DVec3::ZERO, [DVec3::ZERO; 2]),
+        }
     }
 
     /// Memory it occupies, in bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of::<Self>()
-            + size_of_val(&*self.vertices)
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.quads)
             + size_of_val(&*self.solids)
             + size_of_val(&*self.instances)
             + size_of_val(&*self.matrices)
-            + size_of_val(&*self.items)
+            + size_of_val(&*self.blocks)
             + size_of_val(&*self.places)
             + size_of_val(&*self.shapes)
             + size_of_val(&*self.meshes)

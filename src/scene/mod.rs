@@ -5,6 +5,7 @@
 //!   plan      which groups stay groups
 //!   bake      each group in a frame of its own, with a hierarchy over it
 //!   query     what a ray meets
+//!   walk      how it gets there: through the hierarchies of groups within groups
 //!   surface   what shading needs to know there
 //!   emitter   surfaces that shine, for sampling
 //! ```
@@ -51,6 +52,7 @@ mod query;
 mod subtended;
 mod surface;
 mod validate;
+mod walk;
 
 pub use emitter::{Emitter, EmitterId, EmitterSample, TowardSample};
 pub use error::{Problem, SceneError};
@@ -200,8 +202,9 @@ impl Scene {
             stats.primitives += group.places.len();
             stats.instances += group.instances.len();
             stats.bytes += group.bytes();
-            let shared = group.bvh.bytes() + size_of_val(&*group.items);
-            let share = group.instances.len() as f64 / group.items.len().max(1) as f64;
+            let shared = group.bvh.bytes();
+            let leaves = group.instances.len() + group.blocks.len() + group.solids.len();
+            let share = group.instances.len() as f64 / leaves.max(1) as f64;
             stats.instance_bytes += size_of_val(&*group.instances)
                 + size_of_val(&*group.matrices)
                 + (shared as f64 * share) as usize;

@@ -1,7 +1,7 @@
 //! How far a scene reaches in a direction: what a camera needs to know to frame it.
 
 use super::Scene;
-use super::group::{Group, ItemKind};
+use super::group::{Group, Item, ItemKind};
 use crate::math::tolerance::FRAMING_SLACK;
 use glam::{DAffine3, DVec3};
 
@@ -32,8 +32,14 @@ impl Scene {
         // p ↦ normal · (A p + b) = (Aᵀ normal) · p + normal · b
         let offset = normal.dot(to_world.translation);
         let inner = to_world.matrix3.transpose() * normal;
-        let mut reach = |items: std::ops::Range<usize>, best: f64| {
-            let reaches = group.items[items].iter().map(|item| match item.kind() {
+        let mut reach = |leaf: u32, best: f64| {
+            let items = match Item::from_bits(leaf).map(Item::kind) {
+                Some(ItemKind::Block(index)) => group.blocks[index].names().collect(),
+                _ => vec![leaf],
+            };
+            let items = items.into_iter().filter_map(Item::from_bits);
+            let reaches = items.map(|item| match item.kind() {
+                ItemKind::Block(_) => f64::NEG_INFINITY,
                 ItemKind::Instance(index) => {
                     let instance = &group.instances[index];
                     let child = &self.groups[instance.group as usize];
@@ -42,7 +48,7 @@ impl Scene {
                     self.group_reach(child, &placed, normal, slack, least) - offset
                 }
                 ItemKind::Triangle(index) => {
-                    let corners = group.corners(&group.triangles[index]);
+                    let corners = group.triangles[index].corners();
                     furthest(corners.map(|corner| inner.dot(corner)))
                 }
                 ItemKind::Quad(index) => {

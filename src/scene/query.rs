@@ -1,16 +1,13 @@
-//! What a ray meets: the walk through groups within groups, and the questions asked with it.
+//! What a ray meets: the questions, and what is kept of what the [walk](super::walk) finds.
 
 use super::Scene;
 use super::bake::WorldPlane;
-use super::group::{Group, Item, ItemKind};
-use crate::accel::{BoxRay, TraversalStack};
+use super::walk::{Walk, transformed};
+use crate::accel::dispatch;
 use crate::color::Rgb;
 use crate::geometry::interval::{Interval, Line};
-use crate::geometry::triangle::{FlatHit, Shear, intersect_parallelogram, intersect_triangle};
 use crate::geometry::unit::Face;
-use crate::math::tolerance::gamma;
-use crate::math::{Bounds3, PrimitiveId, Ray};
-use glam::DAffine3;
+use crate::math::{PrimitiveId, Ray};
 use std::ops::ControlFlow;
 
 /// The nearest surface along a ray.
@@ -32,8 +29,8 @@ pub struct Hit {
 pub(super) const FIRST_PLANE: u64 = 1 << 63;
 
 /// What the walk does with what it finds.
-trait Sink {
-    /// Whether all intersections are wanted, not only the nearest of each primitive.
+pub(super) trait Sink {
+    /// Whether all intersections are wanted, in whatever order, not only the nearest.
     const EVERY: bool;
     /// The part of the ray that still counts.
     fn interval(&self) -> Interval;
@@ -178,25 +175,20 @@ impl Scene {
                 self.offer_plane(plane, primitive, ray, sink)?;
             }
         }
-        let Some(root) = self.groups.last() else {
-            return ControlFlow::Continue(());
-        };
-        let place = Place {
-            group: root,
-            first: 0,
-            offset: 0.0,
-        };
         let line = Line {
             origin: ray.origin,
             direction: ray.direction,
         };
-        let line = transformed(&line, &self.to_root);
-        let mut walk = Walk {
-            scene: self,
-            ray,
-            sink,
-        };
-        walk.visit(place, &line, &mut TraversalStack::default())
+        match self.groups.last() {
+            Some(root) => dispatch(Walk {
+                scene: self,
+                root,
+                line: transformed(&line, &self.to_root),
+                ray,
+                sink,
+            }),
+            None => ControlFlow::Continue(()),
+        }
     }
 
     fn offer_plane<S: Sink>(
@@ -228,219 +220,4 @@ impl Scene {
         }
         sink.take(hit, |hit| self.passage(ray, hit, plane.shape.material))
     }
-}
-
-/// A group somewhere in the world.
-#[derive(Clone, Copy)]
-struct Place<'s> {
-    group: &'s Group,
-    /// World number of the group's first primitive here.
-    first: u64,
-    /// What has to be added to parameters of the line in this group to get those of the ray.
-    offset: f64,
-}
-
-struct Walk<'s, 'k, S> {
-    scene: &'s Scene,
-    ray: &'k Ray,
-    sink: &'k mut S,
-}
-
-/// The line and what was prepared of it for one group.
-struct Prepared {
-    line: Line,
-    shear: Shear,
-}
-
-impl<S: Sink> Walk<'_, '_, S> {
-    /// The interval that still counts, in parameters of a line that starts `offset` later than the ray.
-    ///
-    /// It ends later by what the difference may be rounded, so that nothing is lost that lies just at the end; what is
-    /// found is judged by [`Sink::wants`] in the ray's own parameter.
-    #[inline]
-    fn interval(&self, offset: f64) -> Interval {
-        let whole = self.sink.interval();
-        Interval {
-            after: whole.after - offset,
-            until: whole.until - offset + gamma(4) * (whole.until + offset),
-        }
-    }
-
-    /// Visits a group along a line given in the group's frame.
-    fn visit(&mut self, place: Place, line: &Line, stack: &mut TraversalStack) -> ControlFlow<()> {
-        // Start where the line enters the group, so that how far away the ray began costs no digits inside it.
-        let Some(shift) = enter(&place.group.bounds, line, self.interval(place.offset)) else {
-            return ControlFlow::Continue(());
-        };
-        let line = Line {
-            origin: line.at(shift),
-            direction: line.direction,
-        };
-        let place = Place {
-            offset: place.offset + shift,
-            ..place
-        };
-        let prepared = Prepared {
-            line,
-            shear: Shear::new(&line),
-        };
-
-        let box_ray = BoxRay::new(line.origin, line.direction);
-        let start = box_ray.start(self.sink.start() - place.offset);
-        let limit = box_ray.limit(self.interval(place.offset).until);
-        place
-            .group
-            .bvh
-            .traverse(&box_ray, start..=limit, stack, |range, stack| {
-                for item in &place.group.items[range] {
-                    if self.offer(*item, place, &prepared, stack).is_break() {
-                        return ControlFlow::Break(());
-                    }
-                }
-                ControlFlow::Continue(box_ray.limit(self.interval(place.offset).until))
-            })
-    }
-
-    /// Offers what the line meets of one item.
-    #[inline]
-    fn offer(
-        &mut self,
-        item: Item,
-        place: Place,
-        prepared: &Prepared,
-        stack: &mut TraversalStack,
-    ) -> ControlFlow<()> {
-        let interval = self.interval(place.offset);
-        match item.kind() {
-            ItemKind::Triangle(index) => {
-                let triangle = &place.group.triangles[index];
-                let corners = triangle
-                    .corners
-                    .map(|corner| &place.group.vertices[corner as usize]);
-                match intersect_triangle(&prepared.shear, corners, interval) {
-                    Some(hit) => self.take_flat(place, triangle.number, hit),
-                    None => ControlFlow::Continue(()),
-                }
-            }
-            ItemKind::Quad(index) => {
-                let quad = &place.group.quads[index];
-                match intersect_parallelogram(&prepared.shear, quad.corner, quad.edges, interval) {
-                    Some(hit) => self.take_flat(place, quad.number, hit),
-                    None => ControlFlow::Continue(()),
-                }
-            }
-            ItemKind::Solid(index) => self.offer_solid(index, place, &prepared.line),
-            ItemKind::Instance(index) => {
-                let instance = &place.group.instances[index];
-                let inner = Place {
-                    group: &self.scene.groups[instance.group as usize],
-                    first: place.first + instance.first,
-                    offset: place.offset,
-                };
-                self.visit(
-                    inner,
-                    &transformed(&prepared.line, &place.group.to_child(instance)),
-                    stack,
-                )
-            }
-        }
-    }
-
-    #[inline]
-    fn take_flat(&mut self, place: Place, number: u32, hit: FlatHit) -> ControlFlow<()> {
-        let primitive = PrimitiveId(place.first + u64::from(number));
-        if primitive == self.ray.skip {
-            return ControlFlow::Continue(());
-        }
-        let FlatHit { t, u, v } = hit;
-        let hit = Hit {
-            t: t + place.offset,
-            primitive,
-            u,
-            v,
-            face: Face::Side,
-        };
-        if !self.sink.wants(&hit) {
-            return ControlFlow::Continue(());
-        }
-        self.take(place, number, hit)
-    }
-
-    fn offer_solid(&mut self, index: usize, place: Place, line: &Line) -> ControlFlow<()> {
-        let solid = &place.group.solids[index];
-        let primitive = PrimitiveId(place.first + u64::from(solid.number));
-        if primitive == self.ray.skip {
-            return ControlFlow::Continue(());
-        }
-        let line = transformed(line, &solid.to_unit);
-        let mut interval = self.interval(place.offset);
-        while let Some((t, face)) = solid.form.intersect(&line, interval) {
-            let hit = Hit {
-                t: t + place.offset,
-                primitive,
-                u: 0.0,
-                v: 0.0,
-                face,
-            };
-            interval.after = t;
-            if !self.sink.wants(&hit) {
-                continue;
-            }
-            self.take(place, solid.number, hit)?;
-            if !S::EVERY {
-                break;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    #[inline]
-    fn take(&mut self, place: Place, number: u32, hit: Hit) -> ControlFlow<()> {
-        let (scene, ray) = (self.scene, self.ray);
-        self.sink.take(hit, |hit| {
-            if place.group.is_opaque {
-                Rgb::BLACK
-            } else {
-                scene.passage(ray, hit, place.group.shape_of(number).material)
-            }
-        })
-    }
-}
-
-/// The same line in another frame; the parameter keeps its meaning.
-#[inline]
-fn transformed(line: &Line, map: &DAffine3) -> Line {
-    Line {
-        origin: map.transform_point3(line.origin),
-        direction: map.transform_vector3(line.direction),
-    }
-}
-
-/// Where the line enters the box, or 0 if it starts inside; `None` if it misses the box within the interval.
-#[inline]
-fn enter(bounds: &Bounds3, line: &Line, interval: Interval) -> Option<f64> {
-    /// Two roundings each way.
-    const SLACK: f64 = 1.0 + 4.0 * f64::EPSILON;
-    let (mut enter, mut exit) = (interval.after.max(0.0), interval.until);
-    for axis in 0..3 {
-        let inverse = 1.0 / line.direction[axis];
-        let at_min = (bounds.min[axis] - line.origin[axis]) * inverse;
-        let at_max = (bounds.max[axis] - line.origin[axis]) * inverse;
-        let (near, far) = if inverse < 0.0 {
-            (at_max, at_min)
-        } else {
-            (at_min, at_max)
-        };
-        // 0 · ∞ is NaN, for a line in the plane of a face; it compares false and changes nothing.
-        enter = if near > enter { near } else { enter };
-        exit = if far * SLACK < exit {
-            far * SLACK
-        } else {
-            exit
-        };
-    }
-    let starts_inside = line.origin.cmpge(bounds.min).all() && line.origin.cmple(bounds.max).all();
-    let shift = if starts_inside { 0.0 } else { enter };
-    // A line beside a face that it is parallel to, or an empty box, is entered at infinity.
-    (enter <= exit && enter < f64::INFINITY).then_some(shift)
 }

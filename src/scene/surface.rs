@@ -167,7 +167,7 @@ impl Scene {
             Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, &near),
             Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, &near),
             Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near),
-            Some(ItemKind::Instance(_)) | None => {
+            Some(ItemKind::Instance(_) | ItemKind::Block(_)) | None => {
                 unreachable!("invariant: only stored primitives are hit")
             }
         };
@@ -262,7 +262,7 @@ fn triangle_point(
     near: &CarriedIn,
 ) -> LocalPoint {
     let triangle = &group.triangles[index];
-    let corners = group.corners(triangle);
+    let corners = triangle.corners();
     let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     let weights = inner_weights(&corners, cross.length(), hit, near);
     let parts: [DVec3; 3] = std::array::from_fn(|corner| corners[corner] * weights[corner]);

@@ -1,0 +1,323 @@
+//! How a ray gets to what it may meet: through the hierarchies of groups within groups.
+
+use super::Scene;
+use super::group::{Group, Item, ItemKind, PlacedGroup};
+use super::query::{Hit, Sink};
+use crate::accel::{BoxRay, FlatRay, Kernel, Lanes, Step, Visitor, Walking, walk};
+use crate::color::Rgb;
+use crate::geometry::interval::{Interval, Line};
+use crate::geometry::triangle::{FlatHit, Shear, intersect_parallelogram, intersect_triangle};
+use crate::geometry::unit::Face;
+use crate::math::tolerance::gamma;
+use crate::math::{Bounds3, PrimitiveId, Ray};
+use glam::{DAffine3, DVec3};
+use std::ops::ControlFlow;
+
+/// The walk of one ray through everything but infinite planes.
+pub(super) struct Walk<'s, 'k, S> {
+    pub(super) scene: &'s Scene,
+    pub(super) root: &'s Group,
+    /// The ray in the frame of the root.
+    pub(super) line: Line,
+    pub(super) ray: &'k Ray,
+    /// What is done with what is found.
+    pub(super) sink: &'k mut S,
+}
+
+impl<S: Sink> Kernel for Walk<'_, '_, S> {
+    type Output = ControlFlow<()>;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> ControlFlow<()> {
+        let Self {
+            scene,
+            root,
+            line,
+            ray,
+            sink,
+        } = self;
+        let Some(at) = Place::enter(root, 0, 0.0, &line, sink) else {
+            return ControlFlow::Continue(());
+        };
+        let mut visit = Visit {
+            scene,
+            ray,
+            sink,
+            at,
+            outer: None,
+            deeper: Vec::new(),
+        };
+        let walking = visit.walking();
+        walk::<V, _>(walking, &mut visit)
+    }
+}
+
+/// A group somewhere in the world, and the ray there.
+#[derive(Clone, Copy)]
+struct Place<'s> {
+    group: &'s Group,
+    /// World number of the group's first primitive here.
+    first: u64,
+    /// What has to be added to parameters of the line in this group to get those of the ray.
+    offset: f64,
+    line: Line,
+    shear: Shear,
+    box_ray: BoxRay,
+    flat_ray: FlatRay,
+}
+
+impl<'s> Place<'s> {
+    /// The group with a line given in its frame, which starts `offset` later than the ray; `None` if the line misses it.
+    #[inline(always)]
+    fn enter<S: Sink>(
+        group: &'s Group,
+        first: u64,
+        offset: f64,
+        line: &Line,
+        sink: &S,
+    ) -> Option<Self> {
+        // Start where the line enters the group, so that how far away the ray began costs no digits inside it.
+        let inverse = 1.0 / line.direction;
+        let shift = enter(&group.bounds, line, inverse, interval(sink, offset))?;
+        let line = Line {
+            origin: line.at(shift),
+            direction: line.direction,
+        };
+        let shear = Shear::new(&line);
+        Some(Self {
+            group,
+            first,
+            offset: offset + shift,
+            line,
+            shear,
+            box_ray: BoxRay::new(line.origin, line.direction, inverse),
+            flat_ray: FlatRay::new(&shear),
+        })
+    }
+}
+
+/// The interval that still counts, in parameters of a line that starts `offset` later than the ray.
+///
+/// It ends later by what the difference may be rounded, so that nothing is lost that lies just at the end; what is
+/// found is judged by [`Sink::wants`] in the ray's own parameter.
+#[inline(always)]
+fn interval<S: Sink>(sink: &S, offset: f64) -> Interval {
+    let whole = sink.interval();
+    Interval {
+        after: whole.after - offset,
+        until: whole.until - offset + gamma(4) * (whole.until + offset),
+    }
+}
+
+/// A walk under way.
+struct Visit<'s, 'k, S> {
+    scene: &'s Scene,
+    ray: &'k Ray,
+    sink: &'k mut S,
+    at: Place<'s>,
+    /// Where it came from, last, and before that.
+    outer: Option<Place<'s>>,
+    deeper: Vec<Place<'s>>,
+}
+
+impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
+    const NEAREST_FIRST: bool = !S::EVERY;
+
+    #[inline(always)]
+    fn leaf<V: Lanes>(&mut self, leaf: u32, limit: f32) -> Step<'s> {
+        let done = match Item::from_bits(leaf).map(Item::kind) {
+            Some(ItemKind::Block(index)) => self.offer_block::<V>(index, limit),
+            Some(ItemKind::Solid(index)) => self.offer_solid(index),
+            Some(ItemKind::Instance(index)) => {
+                let instance = &self.at.group.instances[index];
+                match self.enter(instance) {
+                    Some(walking) => return Step::Enter(walking),
+                    None => return Step::Continue(limit),
+                }
+            }
+            Some(ItemKind::Triangle(_) | ItemKind::Quad(_)) | None => ControlFlow::Continue(()),
+        };
+        match done {
+            ControlFlow::Continue(()) => Step::Continue(self.limit()),
+            ControlFlow::Break(()) => Step::Stop,
+        }
+    }
+
+    #[inline(always)]
+    fn leave(&mut self) -> Walking<'s> {
+        if let Some(outer) = self.outer.take() {
+            self.at = outer;
+            self.outer = self.deeper.pop();
+        }
+        self.walking()
+    }
+}
+
+impl<'s, S: Sink> Visit<'s, '_, S> {
+    /// The end of what counts, for box tests here.
+    #[inline(always)]
+    fn limit(&self) -> f32 {
+        let until = interval(self.sink, self.at.offset).until;
+        self.at.box_ray.limit(until)
+    }
+
+    #[inline(always)]
+    fn walking(&self) -> Walking<'s> {
+        Walking {
+            bvh: &self.at.group.bvh,
+            ray: self.at.box_ray,
+            start: self.at.box_ray.start(self.sink.start() - self.at.offset),
+            limit: self.limit(),
+        }
+    }
+
+    /// Goes into an instance, unless the ray misses it.
+    #[inline(always)]
+    fn enter(&mut self, instance: &PlacedGroup) -> Option<Walking<'s>> {
+        let at = &self.at;
+        let group = &self.scene.groups[instance.group as usize];
+        let line = transformed(&at.line, &at.group.to_child(instance));
+        let first = at.first + instance.first;
+        let inner = Place::enter(group, first, at.offset, &line, self.sink)?;
+        if let Some(outer) = self.outer.replace(self.at) {
+            self.deeper.push(outer);
+        }
+        self.at = inner;
+        Some(self.walking())
+    }
+
+    /// Offers what the ray meets of eight flat primitives.
+    #[inline(always)]
+    fn offer_block<V: Lanes>(&mut self, index: usize, limit: f32) -> ControlFlow<()> {
+        let Some(block) = self.at.group.blocks.get(index) else {
+            return ControlFlow::Continue(());
+        };
+        let start = self.at.box_ray.start(self.sink.start() - self.at.offset);
+        let mut lanes = block.candidates::<V>(&self.at.flat_ray, start, limit);
+        while lanes != 0 {
+            let name = block.name(lanes.trailing_zeros() as usize);
+            lanes &= lanes - 1;
+            self.offer_flat(name)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Offers a triangle or parallelogram, if the ray meets it.
+    #[inline(always)]
+    fn offer_flat(&mut self, name: u32) -> ControlFlow<()> {
+        let group = self.at.group;
+        let interval = interval(self.sink, self.at.offset);
+        let (number, hit) = match Item::from_bits(name).map(Item::kind) {
+            Some(ItemKind::Triangle(index)) => {
+                let triangle = &group.triangles[index];
+                let [a, b, c] = &triangle.corners;
+                let hit = intersect_triangle(&self.at.shear, [a, b, c], interval);
+                (triangle.number, hit)
+            }
+            Some(ItemKind::Quad(index)) => {
+                let quad = &group.quads[index];
+                let hit =
+                    intersect_parallelogram(&self.at.shear, quad.corner, quad.edges, interval);
+                (quad.number, hit)
+            }
+            _ => (0, None),
+        };
+        let Some(FlatHit { t, u, v }) = hit else {
+            return ControlFlow::Continue(());
+        };
+        let hit = self.hit(number, [t, u, v], Face::Side);
+        if hit.primitive == self.ray.skip || !self.sink.wants(&hit) {
+            return ControlFlow::Continue(());
+        }
+        self.take(number, hit)
+    }
+
+    fn offer_solid(&mut self, index: usize) -> ControlFlow<()> {
+        let solid = &self.at.group.solids[index];
+        if self.primitive(solid.number) == self.ray.skip {
+            return ControlFlow::Continue(());
+        }
+        let line = transformed(&self.at.line, &solid.to_unit);
+        let mut interval = interval(self.sink, self.at.offset);
+        while let Some((t, face)) = solid.form.intersect(&line, interval) {
+            interval.after = t;
+            let hit = self.hit(solid.number, [t, 0.0, 0.0], face);
+            if !self.sink.wants(&hit) {
+                continue;
+            }
+            self.take(solid.number, hit)?;
+            if !S::EVERY {
+                break;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The number in the world of a primitive here.
+    #[inline(always)]
+    fn primitive(&self, number: u32) -> PrimitiveId {
+        PrimitiveId(self.at.first + u64::from(number))
+    }
+
+    /// The hit at parameter t of the line here, with coordinates u and v.
+    #[inline(always)]
+    fn hit(&self, number: u32, [t, u, v]: [f64; 3], face: Face) -> Hit {
+        Hit {
+            t: t + self.at.offset,
+            primitive: self.primitive(number),
+            u,
+            v,
+            face,
+        }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, number: u32, hit: Hit) -> ControlFlow<()> {
+        let (scene, ray, group) = (self.scene, self.ray, self.at.group);
+        self.sink.take(hit, |hit| {
+            if group.is_opaque {
+                Rgb::BLACK
+            } else {
+                scene.passage(ray, hit, group.shape_of(number).material)
+            }
+        })
+    }
+}
+
+/// The same line in another frame; the parameter keeps its meaning.
+#[inline]
+pub(super) fn transformed(line: &Line, map: &DAffine3) -> Line {
+    Line {
+        origin: map.transform_point3(line.origin),
+        direction: map.transform_vector3(line.direction),
+    }
+}
+
+/// Where the line enters the box, or 0 if it starts inside; `None` if it misses the box within the interval.
+#[inline]
+fn enter(bounds: &Bounds3, line: &Line, inverse: DVec3, interval: Interval) -> Option<f64> {
+    /// Two roundings each way.
+    const SLACK: f64 = 1.0 + 4.0 * f64::EPSILON;
+    let (mut enter, mut exit) = (interval.after.max(0.0), interval.until);
+    for axis in 0..3 {
+        let inverse = inverse[axis];
+        let at_min = (bounds.min[axis] - line.origin[axis]) * inverse;
+        let at_max = (bounds.max[axis] - line.origin[axis]) * inverse;
+        let (near, far) = if inverse < 0.0 {
+            (at_max, at_min)
+        } else {
+            (at_min, at_max)
+        };
+        // 0 · ∞ is NaN, for a line in the plane of a face; it compares false and changes nothing.
+        enter = if near > enter { near } else { enter };
+        exit = if far * SLACK < exit {
+            far * SLACK
+        } else {
+            exit
+        };
+    }
+    let starts_inside = line.origin.cmpge(bounds.min).all() && line.origin.cmple(bounds.max).all();
+    let shift = if starts_inside { 0.0 } else { enter };
+    // A line beside a face that it is parallel to, or an empty box, is entered at infinity.
+    (enter <= exit && enter < f64::INFINITY).then_some(shift)
+}
