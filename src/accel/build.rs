@@ -93,12 +93,20 @@ impl Box3 {
     }
 }
 
-/// Builds a hierarchy over `boxes` (all finite) whose leaves hold at most `leaf_size` boxes; those numbered from `alone` on
-/// share a leaf with no other.
+/// Boxes of one kind. They share leaves with each other, not with those of other kinds.
+#[derive(Clone, Copy, Debug)]
+pub struct BoxKind {
+    /// The number after their last; the next kind begins there.
+    pub end: usize,
+    /// How many of them fit into a leaf, 1 to 8.
+    pub per_leaf: usize,
+}
+
+/// Builds a hierarchy over `boxes` (all finite), which come sorted by kinds.
 ///
 /// O(n log n), for whatever boxes; the result does not depend on the number of threads.
 #[must_use]
-pub fn build(boxes: &[Box3], leaf_size: usize, alone: usize) -> (Bvh, Leaves) {
+pub fn build(boxes: &[Box3], kinds: &[BoxKind]) -> (Bvh, Leaves) {
     let mut bvh = Bvh::default();
     let mut leaves = Leaves {
         ends: Vec::new(),
@@ -107,13 +115,14 @@ pub fn build(boxes: &[Box3], leaf_size: usize, alone: usize) -> (Bvh, Leaves) {
     if !boxes.is_empty() {
         let items = boxes.par_iter().zip(0_u32..boxes.len() as u32);
         let mut items: Vec<_> = items.map(|(bounds, index)| (*bounds, index)).collect();
-        let light = FULL.div_ceil(leaf_size.max(1));
         let weigh = |index: u32| {
-            if (index as usize) < alone {
-                light
-            } else {
-                FULL
-            }
+            let kind = kinds.partition_point(|kind| kind.end <= index as usize);
+            (
+                kind,
+                kinds
+                    .get(kind)
+                    .map_or(FULL, |kind| FULL.div_ceil(kind.per_leaf.max(1))),
+            )
         };
         let tree = merge(cluster(&mut items, &weigh));
         store(tree, &mut bvh.nodes, &mut leaves);
@@ -146,7 +155,9 @@ type Entry = (Box3, u32);
 /// A box, or two subtrees and the box around them.
 struct Subtree {
     bounds: Box3,
-    /// Of the boxes in it, in parts of a [`FULL`] leaf.
+    /// The kind of the boxes in it, if there is only one.
+    kind: usize,
+    /// Of the boxes in it, in parts of a [`FULL`] leaf; more than that if they are of several kinds.
     weight: usize,
     /// What rays spend in it at least if it takes up to 1, 2, … places of a node, up to a factor.
     costs: [f64; WIDTH],
@@ -160,9 +171,10 @@ enum Content {
 }
 
 impl Subtree {
-    fn item(&(bounds, index): &Entry, weight: usize) -> Self {
+    fn item(&(bounds, index): &Entry, (kind, weight): (usize, usize)) -> Self {
         Self {
             bounds,
+            kind,
             weight,
             costs: [bounds.half_area() * LEAF_COST; WIDTH],
             content: Content::Item(index),
@@ -171,7 +183,10 @@ impl Subtree {
 
     fn pair(left: Self, right: Self) -> Self {
         let bounds = left.bounds.union(&right.bounds);
-        let weight = left.weight + right.weight;
+        let (kind, mut weight) = (left.kind, left.weight + right.weight);
+        if kind != right.kind {
+            weight = weight.max(FULL + 1);
+        }
         let area = bounds.half_area();
         let as_node = area * NODE_COST + split(&left, &right, WIDTH).0;
         let as_leaf = area * LEAF_COST;
@@ -184,6 +199,7 @@ impl Subtree {
         }
         Self {
             bounds,
+            kind,
             weight,
             costs,
             content: Content::Pair(Box::new([left, right])),
@@ -198,7 +214,7 @@ impl Subtree {
 }
 
 /// Joins the items to at most half a batch of subtrees.
-fn cluster(items: &mut [Entry], weigh: &(impl Fn(u32) -> usize + Sync)) -> Vec<Subtree> {
+fn cluster(items: &mut [Entry], weigh: &(impl Fn(u32) -> (usize, usize) + Sync)) -> Vec<Subtree> {
     let parts = if items.len() <= BATCH {
         let item = |entry: &Entry| Subtree::item(entry, weigh(entry.1));
         items.iter().map(item).collect()
@@ -437,6 +453,33 @@ mod tests {
             .collect()
     }
 
+    /// All boxes are of one kind.
+    fn all(boxes: &[Box3], per_leaf: usize) -> [BoxKind; 1] {
+        let end = boxes.len();
+        [BoxKind { end, per_leaf }]
+    }
+
+    #[test]
+    fn kinds_do_not_share_leaves() {
+        let boxes = boxes(3000);
+        let kind = |end, per_leaf| BoxKind { end, per_leaf };
+        let kinds = [kind(1000, 8), kind(2000, 1), kind(3000, 2)];
+        let (_, leaves) = build(&boxes, &kinds);
+        let kind_of = |item: &u32| kinds.partition_point(|kind| kind.end <= *item as usize);
+        let mut shared = [0; 3];
+        for leaf in 0..leaves.ends.len() as u32 {
+            let items = &leaves.order[leaves.range(leaf)];
+            let kind = kind_of(&items[0]);
+            assert!(items.len() <= kinds[kind].per_leaf);
+            assert!(items.iter().all(|item| kind_of(item) == kind));
+            shared[kind] += usize::from(items.len() > 1);
+        }
+        assert!(
+            shared[0] > 50 && shared[1] == 0 && shared[2] > 200,
+            "{shared:?}"
+        );
+    }
+
     /// Checks that every box stands in exactly one leaf, inside the boxes of all nodes above, and returns the depth.
     fn validate(bvh: &Bvh, leaves: &Leaves, boxes: &[Box3], leaf_size: usize) -> usize {
         let mut seen = vec![false; boxes.len()];
@@ -485,12 +528,12 @@ mod tests {
         for count in [1, 2, 7, 8, 9, 64, 1000, 20_000] {
             for leaf_size in [1, 4, 8] {
                 let boxes = boxes(count);
-                let (bvh, leaves) = build(&boxes, leaf_size, boxes.len());
+                let (bvh, leaves) = build(&boxes, &all(&boxes, leaf_size));
                 let depth = validate(&bvh, &leaves, &boxes, leaf_size);
                 assert!(depth < 20, "{count}: {depth}");
             }
         }
-        assert_eq!(build(&[], 4, 0), (Bvh::default(), Leaves::default()));
+        assert_eq!(build(&[], &[]), (Bvh::default(), Leaves::default()));
     }
 
     /// `count` cubes with the given centre along x and half an edge.
@@ -536,7 +579,7 @@ mod tests {
             ("of all magnitudes", cubes(10_000, whimsical)),
             ("huge", cubes(1000, |k| (1e35 * k as f32, 1e38))),
         ] {
-            let (bvh, leaves) = build(&boxes, 4, boxes.len());
+            let (bvh, leaves) = build(&boxes, &all(&boxes, 4));
             let depth = validate(&bvh, &leaves, &boxes, 4);
             assert!(depth <= 24, "{name}: {depth}");
             assert!(
@@ -555,7 +598,7 @@ mod tests {
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| build(&boxes, 4, boxes.len()))
+            pool.install(|| build(&boxes, &all(&boxes, 4)))
         };
         let alone = with(1);
         assert!(alone == with(2) && alone == with(3));

@@ -17,7 +17,7 @@ mod simd;
 mod stack;
 mod traverse;
 
-pub use build::{Box3, Leaves, build};
+pub use build::{Box3, BoxKind, Leaves, build};
 pub use flats::{FlatBlock, FlatRay};
 pub use node::Bvh;
 pub use simd::{Kernel, Lanes, WIDTH, dispatch};

@@ -79,8 +79,9 @@ pub struct Walking<'b> {
 pub enum Step<'b> {
     /// Go on looking, as far as this parameter and no farther.
     Continue(f32),
-    /// Walk another hierarchy that is in the leaf, then come back.
-    Enter(Walking<'b>),
+    /// Walk another hierarchy that is in the leaf, then come back and show the rest of it, if there is any, as a leaf of this
+    /// name.
+    Enter(Walking<'b>, Option<u32>),
     /// Stop.
     Stop,
 }
@@ -114,7 +115,10 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
         } else {
             match visitor.leaf::<V>(next.0, walking.limit) {
                 Step::Continue(nearer) => walking.limit = nearer,
-                Step::Enter(inner) => {
+                Step::Enter(inner, rest) => {
+                    if let Some(rest) = rest {
+                        stack.push(Waiting::new(0.0, Child(rest)));
+                    }
                     stack.push(Waiting::new(0.0, Child::LEAVE));
                     walking = inner;
                     next = Child::ROOT;

@@ -7,7 +7,7 @@ use super::group::{
 use super::placement::Placement;
 use super::plan::{PlannedGroup, PlannedShape, primitive_count};
 use super::validate::{check_bounds, check_shape};
-use crate::accel::{self, Box3, FlatBlock, Leaves};
+use crate::accel::{self, Box3, BoxKind, FlatBlock, Leaves};
 use crate::geometry::Shape;
 use crate::geometry::reduce::Reduced;
 use crate::material::Material;
@@ -294,9 +294,16 @@ fn store_instances(
 /// Builds the hierarchy and puts everything into the order of its leaves.
 fn arrange(group: &mut Group, built: &[Group]) {
     let boxes = boxes(group, built);
-    // Curved shapes and instances are dear to look at: each has a box of its own.
-    let alone = group.triangles.len() + group.quads.len();
-    let (bvh, leaves) = accel::build(&boxes, LEAF_SIZE, alone);
+    let flats = group.triangles.len() + group.quads.len();
+    let kind = |end, per_leaf| BoxKind { end, per_leaf };
+    let kinds = [
+        kind(flats, LEAF_SIZE),
+        // Curved shapes are dear to test: each has a box of its own.
+        kind(flats + group.solids.len(), 1),
+        // Instances are dearer to enter, but a million of them want to be stored small.
+        kind(boxes.len(), 2),
+    ];
+    let (bvh, leaves) = accel::build(&boxes, &kinds);
     group.bvh = bvh;
     group.bounds = boxes.iter().fold(Bounds3::EMPTY, |bounds, part| {
         let corner = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
@@ -347,10 +354,13 @@ fn name_leaves(group: &mut Group, leaves: &Leaves, items: &[Item]) {
     let mut bvh = std::mem::take(&mut group.bvh);
     bvh.relabel(|leaf| {
         let items = &items[leaves.range(leaf)];
-        if let [item] = items
-            && !matches!(item.kind(), ItemKind::Triangle(_) | ItemKind::Quad(_))
-        {
-            return item.bits();
+        match items.first().map(|item| item.kind()) {
+            // Instances stand in the order of the leaves.
+            Some(ItemKind::Instance(first)) if items.len() > 1 => {
+                return Item::new(ItemKind::TwoInstances(first)).bits();
+            }
+            Some(ItemKind::Instance(_) | ItemKind::Solid(_)) => return items[0].bits(),
+            _ => {}
         }
         let mut block = FlatBlock::EMPTY;
         for (lane, item) in items.iter().enumerate() {

@@ -247,7 +247,9 @@ impl Emitter {
                     }
                 }
             }
-            ItemKind::Instance(_) | ItemKind::Block(_) => return None,
+            ItemKind::Instance(_) | ItemKind::TwoInstances(_) | ItemKind::Block(_) => {
+                return None;
+            }
         };
         let (material, organ) = (shape.material, shape.organ);
         (area > 0.0).then_some(Self {

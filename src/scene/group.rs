@@ -57,7 +57,7 @@ pub(super) struct Group {
     /// Sorted by the number of the first primitive.
     pub(super) shapes: Vec<ShapeRecord>,
     pub(super) meshes: Vec<MeshShading>,
-    /// Its leaves are called by the [`Item`] that each holds: a block, a solid or an instance.
+    /// Its leaves are called by the [`Item`] that each holds: a block, a solid or one or two instances.
     pub(super) bvh: Bvh,
     /// Primitives of this group and, once per instance, of all groups below; numbers of primitives are below it.
     pub(super) total: u64,
@@ -65,8 +65,8 @@ pub(super) struct Group {
     pub(super) is_opaque: bool,
 }
 
-/// A stored thing: a kind in the upper three bits, an index into the list of that kind in the others. The highest bit is set
-/// for parallelograms only, as [`FlatBlock`] wants it.
+/// A stored thing: a kind in the upper three bits, an index into the list of that kind in the others. Of flat primitives,
+/// the highest bit is set for parallelograms only, as [`FlatBlock`] wants it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Item(std::num::NonZeroU32);
 
@@ -77,7 +77,10 @@ pub(super) enum ItemKind {
     Quad(usize),
     Solid(usize),
     Instance(usize),
+    /// Up to eight flat primitives of a leaf.
     Block(usize),
+    /// An instance and the next.
+    TwoInstances(usize),
 }
 
 impl Item {
@@ -91,6 +94,7 @@ impl Item {
             ItemKind::Instance(index) => (2, index),
             ItemKind::Block(index) => (3, index),
             ItemKind::Quad(index) => (4, index),
+            ItemKind::TwoInstances(index) => (5, index),
         };
         // One is added so that no item is 0.
         let bits = tag << 29 | (index as u32 + 1);
@@ -118,7 +122,8 @@ impl Item {
             1 => ItemKind::Solid(index),
             2 => ItemKind::Instance(index),
             3 => ItemKind::Block(index),
-            _ => ItemKind::Quad(index),
+            4 => ItemKind::Quad(index),
+            _ => ItemKind::TwoInstances(index),
         }
     }
 }

@@ -35,11 +35,14 @@ impl Scene {
         let mut reach = |leaf: u32, best: f64| {
             let items = match Item::from_bits(leaf).map(Item::kind) {
                 Some(ItemKind::Block(index)) => group.blocks[index].names().collect(),
+                Some(ItemKind::TwoInstances(first)) => [first, first + 1]
+                    .map(|index| Item::new(ItemKind::Instance(index)).bits())
+                    .to_vec(),
                 _ => vec![leaf],
             };
             let items = items.into_iter().filter_map(Item::from_bits);
             let reaches = items.map(|item| match item.kind() {
-                ItemKind::Block(_) => f64::NEG_INFINITY,
+                ItemKind::Block(_) | ItemKind::TwoInstances(_) => f64::NEG_INFINITY,
                 ItemKind::Instance(index) => {
                     let instance = &group.instances[index];
                     let child = &self.groups[instance.group as usize];

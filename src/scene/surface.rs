@@ -167,7 +167,7 @@ impl Scene {
             Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, &near),
             Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, &near),
             Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near),
-            Some(ItemKind::Instance(_) | ItemKind::Block(_)) | None => {
+            Some(ItemKind::Instance(_) | ItemKind::TwoInstances(_) | ItemKind::Block(_)) | None => {
                 unreachable!("invariant: only stored primitives are hit")
             }
         };

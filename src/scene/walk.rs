@@ -1,7 +1,7 @@
 //! How a ray gets to what it may meet: through the hierarchies of groups within groups.
 
 use super::Scene;
-use super::group::{Group, Item, ItemKind, PlacedGroup};
+use super::group::{Group, Item, ItemKind};
 use super::query::{Hit, Sink};
 use crate::accel::{BoxRay, FlatRay, Kernel, Lanes, Step, Visitor, Walking, walk};
 use crate::color::Rgb;
@@ -128,13 +128,14 @@ impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
         let done = match Item::from_bits(leaf).map(Item::kind) {
             Some(ItemKind::Block(index)) => self.offer_block::<V>(index, limit),
             Some(ItemKind::Solid(index)) => self.offer_solid(index),
-            Some(ItemKind::Instance(index)) => {
-                let instance = &self.at.group.instances[index];
-                match self.enter(instance) {
-                    Some(walking) => return Step::Enter(walking),
-                    None => return Step::Continue(limit),
-                }
+            Some(ItemKind::TwoInstances(index)) => {
+                let second = Item::new(ItemKind::Instance(index + 1));
+                return match self.enter(index) {
+                    Some(walking) => Step::Enter(walking, Some(second.bits())),
+                    None => self.enter_or_go_on(index + 1, limit),
+                };
             }
+            Some(ItemKind::Instance(index)) => return self.enter_or_go_on(index, limit),
             Some(ItemKind::Triangle(_) | ItemKind::Quad(_)) | None => ControlFlow::Continue(()),
         };
         match done {
@@ -171,10 +172,20 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
         }
     }
 
-    /// Goes into an instance, unless the ray misses it.
     #[inline(always)]
-    fn enter(&mut self, instance: &PlacedGroup) -> Option<Walking<'s>> {
+    fn enter_or_go_on(&mut self, index: usize, limit: f32) -> Step<'s> {
+        match self.enter(index) {
+            Some(walking) => Step::Enter(walking, None),
+            None => Step::Continue(limit),
+        }
+    }
+
+    /// Goes into an instance, unless the ray misses it.
+    // Called from three places, so not inlined; it returns no lanes and costs no more than a call.
+    #[inline(never)]
+    fn enter(&mut self, index: usize) -> Option<Walking<'s>> {
         let at = &self.at;
+        let instance = &at.group.instances[index];
         let group = &self.scene.groups[instance.group as usize];
         let line = transformed(&at.line, &at.group.to_child(instance));
         let first = at.first + instance.first;
