@@ -34,6 +34,9 @@ const CHUNK: usize = 256;
 /// Where rays from surfaces begin to count, in metres: Embree's coordinates have seven digits.
 const NEAREST: f64 = 1e-3;
 
+/// A name, the world, and the views of it: from where, at what.
+type Case = (String, Box<dyn Fn() -> Vec<Group>>, Vec<(DVec3, DVec3)>);
+
 fn main() {
     let wanted: Vec<String> = std::env::args()
         .skip(1)
@@ -50,7 +53,7 @@ fn main() {
     println!("|---|---|---|---|---|---|---|---|");
     let above = |half: f64| (DVec3::new(-half, -half, 35.0), DVec3::ZERO);
     let inside = (DVec3::new(1.0, 1.0, 1.7), DVec3::new(9.0, 9.0, 4.0));
-    let mut cases: Vec<(String, Box<dyn Fn() -> Vec<Group>>, Vec<(DVec3, DVec3)>)> = vec![
+    let mut cases: Vec<Case> = vec![
         (
             "tree of a million triangles".into(),
             Box::new(big_tree),

@@ -57,8 +57,8 @@ impl FlatBlock {
     pub fn set(&mut self, lane: usize, corner: DVec3, edges: [DVec3; 2], name: u32) {
         for axis in 0..3 {
             self.corner[axis][lane] = corner[axis] as f32;
-            for side in 0..2 {
-                self.edges[side][axis][lane] = edges[side][axis] as f32;
+            for (stored, edge) in self.edges.iter_mut().zip(edges) {
+                stored[axis][lane] = edge[axis] as f32;
             }
         }
         self.names[lane] = name;

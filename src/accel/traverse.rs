@@ -75,7 +75,6 @@ pub struct Walking<'b> {
 }
 
 /// What a leaf answers.
-#[expect(clippy::large_enum_variant, reason = "it is inlined and never stored")]
 pub enum Step<'b> {
     /// Go on looking, as far as this parameter and no farther.
     Continue(f32),
