@@ -324,3 +324,26 @@ fn skies_shine_with_their_own_power_and_colour() {
     };
     assert!((radiance.r * PI - 6.0).abs() < 1e-12 && radiance.g == 0.0);
 }
+
+#[test]
+fn a_mesh_in_a_variable_is_drawn_again_and_again() {
+    let text = "import de.grogra.xl.util.*;
+static MeshNode shared;
+module Leaf(float size) ==> Scale(Math.sqrt(size / shared.getSurfaceArea())) shared.(setShader(GREEN)) Sphere(0.1);
+protected void init() [
+  { FloatList v = new FloatList(new float[] {0, 0, 0, 0.5, 1, 0}); v.push(-0.5, 1, 0); v.add(0); v.addAll(new float[] {7, 2, 0, 7}, 1, 2);
+    PolygonMesh m = new PolygonMesh(); m.setVertexData(v); m.setIndexData(new IntList(new int[] {0, 1, 2, 2, 1, 3}));
+    shared = new MeshNode(m); }
+  Axiom ==> M(0) [Leaf(4)] [Leaf(9)];
+]";
+    let mut growth = grow(text);
+    let drawn = interpret(&mut growth, Limits::default()).unwrap();
+    let again = interpret(&mut growth, Limits::default()).unwrap();
+    let meshes = |of: &Interpretation| {
+        let shapes = of.scene.groups.iter().flat_map(|group| &group.shapes);
+        shapes.filter(|s| matches!(s.shape, Shape::Mesh(_))).count()
+    };
+    assert!(meshes(&drawn) > 0);
+    assert_eq!(meshes(&drawn), meshes(&again));
+    assert_eq!(growth.counts().iter().map(|c| c.1).sum::<usize>(), 3);
+}

@@ -2,12 +2,42 @@
 
 use super::Checker;
 use super::model::Type;
+use super::pattern::Builder;
 use crate::diag::{Diagnostic, Span, nearest};
 use crate::graph::TypeId;
 use crate::library::{self, ClassId, FunctionId};
 use crate::syntax::ast;
 
 impl Checker<'_> {
+    /// What follows a part that is searched apart.
+    pub(super) fn report_row_after_choice(&mut self, builder: &mut Builder, span: Span) {
+        builder.is_wrong = true;
+        let message = "a part in `(: … )`, `(& … )` or `(? … )` ends its row";
+        let fault = Diagnostic::error("misplaced-choice", span, message);
+        self.report(fault.hint("write what follows as a part of its own, behind a comma"));
+    }
+
+    /// A part searched apart that cannot stand where it does.
+    pub(super) fn report_misplaced_choice(
+        &mut self,
+        builder: &mut Builder,
+        is_nested: bool,
+        span: Span,
+    ) {
+        builder.is_wrong = true;
+        let message = if is_nested {
+            "a part in `(: … )`, `(& … )` or `(? … )` cannot hold another one"
+        } else {
+            "what may be missing cannot be replaced"
+        };
+        let hint = if is_nested {
+            "put the two side by side: `A (: > B), (: +> C)`"
+        } else {
+            "put it into a context: `A (* (? > B) *)`"
+        };
+        self.report(Diagnostic::error("misplaced-choice", span, message).hint(hint));
+    }
+
     /// Adds the nearest of the names that could have been meant.
     pub(super) fn did_you_mean<'n>(
         &self,

@@ -231,28 +231,6 @@ impl Checker<'_> {
         cursor.edge = Some(written);
     }
 
-    fn report_row_after_choice(&mut self, builder: &mut Builder, span: Span) {
-        builder.is_wrong = true;
-        let message = "a part in `(: … )`, `(& … )` or `(? … )` ends its row";
-        let fault = Diagnostic::error("misplaced-choice", span, message);
-        self.report(fault.hint("write what follows as a part of its own, behind a comma"));
-    }
-
-    fn report_misplaced_choice(&mut self, builder: &mut Builder, is_nested: bool, span: Span) {
-        builder.is_wrong = true;
-        let message = if is_nested {
-            "a part in `(: … )`, `(& … )` or `(? … )` cannot hold another one"
-        } else {
-            "what may be missing cannot be replaced"
-        };
-        let hint = if is_nested {
-            "put the two side by side: `A (: > B), (: +> C)`"
-        } else {
-            "put it into a context: `A (* (? > B) *)`"
-        };
-        self.report(Diagnostic::error("misplaced-choice", span, message).hint(hint));
-    }
-
     fn branch<'i>(
         &mut self,
         builder: &mut Builder,

@@ -116,7 +116,7 @@ const TYPES: &[(&[&str], &str)] = &[
         "of curved shapes there are `NURBSSurface` with a `BezierSurface`, `BSplineGrid` or `ProfileSweep`, and `Sweep` for stems",
     ),
     (
-        &["FloatList", "IntList", "VertexGrid", "PointCloud"],
+        &["VertexGrid", "PointCloud"],
         "give a `PolygonMesh` arrays of `float` and `int`, or draw primitives",
     ),
     (

@@ -121,6 +121,43 @@ impl<O: Payload> Graph<O> {
         true
     }
 
+    /// A new node of the same type with the same values. Queries do not find it, and nothing is linked to it.
+    ///
+    /// # Errors
+    /// The node is gone, or there is no room for another.
+    pub fn twin(&mut self, node: NodeId) -> Result<NodeId, GraphError> {
+        let ty = self.type_of(node)?;
+        let copy = self.create(ty)?;
+        for number in 0..self.types[ty].fields.len() {
+            let field = &self.types[ty].fields[number];
+            let (kind, is_aside) = (field.kind, matches!(field.storage, Storage::Side));
+            let field = FieldId(number as u16);
+            if is_aside && !self.has_side(node, field) {
+                continue;
+            }
+            match kind {
+                FieldKind::Object => {
+                    let value = self.get_object(node, field)?;
+                    self.set_object(copy, field, value)?;
+                }
+                FieldKind::Float | FieldKind::Double => {
+                    let value = self.get_f64(node, field)?;
+                    self.set_f64(copy, field, value)?;
+                }
+                FieldKind::Boolean
+                | FieldKind::Byte
+                | FieldKind::Short
+                | FieldKind::Char
+                | FieldKind::Int
+                | FieldKind::Long => {
+                    let value = self.get_i64(node, field)?;
+                    self.set_i64(copy, field, value)?;
+                }
+            }
+        }
+        Ok(copy)
+    }
+
     /// Sets an integer field.
     pub fn set_i32(&mut self, node: NodeId, field: FieldId, value: i32) -> Result<(), GraphError> {
         self.set_number(node, field, |kind| kind.encode_i32(value))

@@ -110,6 +110,8 @@ classes! {
     Dataset, "A table: rows of values, with names of columns.";
     DatasetRef: Dataset, "A table by its name.";
     DatasetRow, "A row of a table.";
+    FloatList, "Floats in order, such as the coordinates of a `PolygonMesh`.";
+    IntList, "Whole numbers in order, such as the corners of the triangles of a `PolygonMesh`.";
     File, "The path of a file.";
     Reader, "A text file that is read.";
     FileReader: Reader, "A text file that is read.";

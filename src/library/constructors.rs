@@ -4,7 +4,8 @@
 use std::sync::LazyLock;
 
 use super::ValueType::{
-    Boolean, Char, CharArray, Class, Double, Float, FloatArray, Int, Long, String, Text, Void,
+    Boolean, Char, CharArray, Class, Double, Float, FloatArray, Int, IntArray, Long, String, Text,
+    Void,
 };
 use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
@@ -119,6 +120,10 @@ signatures! {
     SkinnedSweep = "SkinnedSurface"."new"(Class(ClassId::BSplineSurface) sweep) -> Void, Pure, "", "The same surface.";
     SkinnedSurface = "SkinnedSurface"."new"(Class(ClassId::Collection) curves) -> Void, Pure, "", "Over the curves of a list, which have the same degree and number of points.";
     SurfaceOfRevolution = "SurfaceOfRevolution"."new"(Class(ClassId::BSplineCurve) profile) -> Void, Pure, "", "From a curve in the plane of x and z.";
+    FloatList = "FloatList"."new"() -> Void, Pure, "", "Empty.";
+    FloatListOf = "FloatList"."new"(FloatArray values) -> Void, Pure, "", "The same numbers.";
+    IntList = "IntList"."new"() -> Void, Pure, "", "Empty.";
+    IntListOf = "IntList"."new"(IntArray values) -> Void, Pure, "", "The same numbers.";
     PolygonMesh = "PolygonMesh"."new"() -> Void, Pure, "", "Empty.";
 }
 

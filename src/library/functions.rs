@@ -229,6 +229,8 @@ signatures! {
     NanoTime = "System"."nanoTime"() -> Long, Writes, "ns", "Time since some moment.";
     ArrayCopy = "System"."arraycopy"(Object source, Int from, Object target, Int to, Int n) -> Void, Writes, "", "Copies elements: from an array at an index into another at an index, so many.";
     LineSeparator = "System"."lineSeparator"() -> String, Pure, "", "The end of a line, `\\n`.";
+    MainProperty = "Main"."getProperty"(String name) -> String, Pure, "", "Null: GroIMP's own settings; there is no `headless`.";
+    MainArgument = "Main"."getArg"(Int index) -> String, Pure, "", "Null: the command line has no arguments for the model.";
     SystemProperty = "System"."getProperty"(String name) -> String, Pure, "", "`line.separator`, `file.separator`, `path.separator` and `user.dir`; null for others.";
     Sleep = "Thread"."sleep"(Long millis) -> Void, Prints, "ms", "Nothing: growth waits for nobody.";
     SetDefaultLocale = "Locale"."setDefault"(Class(ClassId::Locale) locale) -> Void, Prints, "", "Nothing: numbers are always written the English way.";

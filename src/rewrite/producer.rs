@@ -197,6 +197,12 @@ impl<O: Payload> Queue<O> {
         self.push_frame(None);
     }
 
+    /// Whether an instantiation body is at work that did not make this node: it can draw a copy of it only.
+    pub fn is_foreign(&mut self, node: NodeId) -> bool {
+        let frame = self.frame();
+        frame.arrow.is_none() && !frame.made.contains(&node)
+    }
+
     /// The next node, new or existing. New ones enter the graph when the step is applied. An instantiation body can only
     /// use new ones; others are left out.
     pub fn node(&mut self, graph: &mut Graph<O>, node: NodeId) -> Result<(), GraphError> {

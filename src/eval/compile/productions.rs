@@ -2,7 +2,7 @@
 
 use super::Scope;
 use super::sequences::Turn;
-use crate::check::model::{Expr, Production, Slot};
+use crate::check::model::{Expr, ExprKind, Production, Slot};
 use crate::eval::code::{Eval, Exec, Flow, Label};
 use crate::eval::stack::{Kind, Local};
 use crate::eval::trap::Trap;
@@ -117,15 +117,21 @@ impl Scope<'_> {
 
     fn produce_node(&self, node: &Expr, slot: Option<Slot>) -> Exec {
         let span = node.span;
+        let is_new = makes_node(node);
         let node = self.node(node);
         let slot = slot.map(|slot| {
             let (Local::Word(at) | Local::Value(at)) = self.local(slot);
             at
         });
         Box::new(move |p, m| {
-            let Some(node) = node.get(p, m)? else {
+            let Some(mut node) = node.get(p, m)? else {
                 return Err(Trap::null("add a node to the graph", span));
             };
+            // A node that stood in a variable belongs to the model, not to the drawing; one of the graph is drawn there.
+            if !is_new && m.queue.is_foreign(node) && !m.graph.is_inserted(node) {
+                let copy = m.graph.twin(node);
+                node = copy.map_err(|error| m.graph_trap(&error, node, span))?;
+            }
             if let Some(at) = slot {
                 Some(node).store(&mut m.stack, at);
             }
@@ -148,6 +154,15 @@ impl Scope<'_> {
             _ => None,
         };
         pieces.iter().find_map(nested).unwrap_or_default()
+    }
+}
+
+/// Whether an expression makes the node it gives.
+fn makes_node(node: &Expr) -> bool {
+    match &node.kind {
+        ExprKind::NewNode(_) => true,
+        ExprKind::With { object, .. } => makes_node(object),
+        _ => false,
     }
 }
 

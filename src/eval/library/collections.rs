@@ -230,6 +230,15 @@ pub(super) fn add(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     })
 }
 
+/// Appends values to a list.
+pub(super) fn append(cx: &Context<'_>, args: &[Value], values: &[Value]) -> Result<Value, Trap> {
+    on_list(cx, args, |list| {
+        list.values.extend_from_slice(values);
+        pay(cx, list)?;
+        Ok(Value::Null)
+    })
+}
+
 pub(super) fn insert(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     on_list(cx, args, |list| {
         let place = checked(cx, args.int(1), list.values.len() + 1)?;

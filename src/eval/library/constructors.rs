@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, matrices,
+    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, lists, matrices,
     moments, more, new_object, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
@@ -82,6 +82,8 @@ pub fn constructor(id: C) -> Maker {
         C::SkinnedSweep => files::make_same,
         C::SkinnedSurface => freeform::make_skin,
         C::SurfaceOfRevolution => freeform::make_revolution,
+        C::FloatList | C::IntList => collections::make_list,
+        C::FloatListOf | C::IntListOf => lists::make_list_of,
         C::PolygonMesh => freeform::make_mesh,
     }
 }

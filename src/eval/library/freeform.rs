@@ -1,11 +1,15 @@
 //! Curves, curved surfaces and meshes: what a model gives is kept as it is, and understood when it is drawn.
 
-use super::{Arguments, Context, new_object};
+use std::sync::LazyLock;
+
+use super::{Arguments, Context, lists, new_object};
 use crate::eval::freeform::{CurveForm, Freeform, MeshForm, Points, SurfaceForm};
 use crate::eval::object::Data;
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
+use crate::graph::FieldId;
 use crate::library::ClassId;
+use glam::DVec3;
 
 fn made(cx: &Context<'_>, class: ClassId, form: Freeform) -> Result<Value, Trap> {
     let charge = cx
@@ -19,15 +23,10 @@ fn null(cx: &Context<'_>, what: &'static str) -> Trap {
     Trap::null(what, cx.span)
 }
 
-/// The numbers of an array.
+/// The numbers of an array or a list.
 fn numbers(cx: &Context<'_>, args: &[Value], index: usize) -> Result<Vec<f64>, Trap> {
-    let array = args
-        .at(index)
-        .as_array()
-        .ok_or_else(|| null(cx, "use an array"))?;
-    Ok((0..array.len())
-        .filter_map(|i| array.get(i)?.as_double())
-        .collect())
+    let elements = lists::elements(cx, args, index)?;
+    Ok(elements.iter().filter_map(Value::as_double).collect())
 }
 
 /// What an argument describes.
@@ -186,4 +185,49 @@ pub(super) fn set_normals(cx: &mut Context<'_>, args: &[Value]) -> Result<Value,
 pub(super) fn set_textures(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let new = numbers(cx, args, 1)?;
     change(cx, args, |mesh| mesh.textures = new)
+}
+
+/// `node.getSurfaceArea()`
+pub(super) fn mesh_area(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    static POLYGONS: LazyLock<Option<FieldId>> = LazyLock::new(|| {
+        let table = crate::turtle::types();
+        table.field(table.find("MeshNode")?, "polygons")
+    });
+    let node = cx.node(args, 0)?;
+    let graph = &cx.machine.graph;
+    let ty = graph.types().find("MeshNode");
+    let field = POLYGONS.filter(|_| ty.is_some_and(|ty| graph.is_a(node, ty)));
+    let held = field.and_then(|field| graph.peek_object(node, field).ok().flatten());
+    let area = held
+        .and_then(Value::as_object)
+        .map(|object| match &*object.lock() {
+            Data::Freeform(form, _) => match &**form {
+                Freeform::Mesh(mesh) => area_of(mesh),
+                _ => 0.0,
+            },
+            _ => 0.0,
+        });
+    Ok(Value::Double(area.unwrap_or(0.0)))
+}
+
+/// Area of the triangles whose corners there are.
+fn area_of(mesh: &MeshForm) -> f64 {
+    let corners: Vec<DVec3> = mesh
+        .vertices
+        .chunks_exact(3)
+        .map(DVec3::from_slice)
+        .collect();
+    let in_order = || (0..corners.len()).collect();
+    let numbers: Vec<usize> = if mesh.indices.is_empty() {
+        in_order()
+    } else {
+        let number = |i: &i32| usize::try_from(*i).unwrap_or(usize::MAX);
+        mesh.indices.iter().map(number).collect()
+    };
+    let area = |triangle: &[usize]| {
+        let [a, b, c] = [0, 1, 2].map(|i| corners.get(triangle[i]));
+        let (a, b, c) = (a?, b?, c?);
+        Some(0.5 * (*b - *a).cross(*c - *a).length())
+    };
+    numbers.chunks_exact(3).filter_map(area).sum()
 }

@@ -46,6 +46,8 @@ pub fn function(id: F) -> Behaviour {
         | F::SnapshotSized
         | F::SaveGraph
         | F::RunLater
+        | F::MainProperty
+        | F::MainArgument
         | F::Workbench
         | F::RepaintView
         | F::Gc => Native(system::nothing),

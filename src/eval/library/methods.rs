@@ -3,8 +3,8 @@
 use super::Behaviour::{self, Native};
 use super::{
     Arguments, Context, arrays, buffers, collections, data, deques, files, freeform, getter, keyed,
-    light, matrices, moments, more, numbers, ordering, random, setter, shaders, strings, surfaces,
-    system, values, vectors,
+    light, lists, matrices, moments, more, numbers, ordering, random, setter, shaders, strings,
+    surfaces, system, values, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
@@ -359,8 +359,15 @@ pub fn method(id: M) -> Behaviour {
         M::WriterPrintf | M::WriterFormat => files::print_formatted,
         M::ThrowableMessage | M::ThrowableLocalizedMessage => message,
         M::ThrowableSetMessage => set_message,
-        M::MeshSetVertices => freeform::set_vertices,
-        M::MeshSetIndices => freeform::set_indices,
+        M::FloatListAdd | M::FloatListPush | M::IntListAdd | M::IntListPush => collections::add,
+        M::FloatListPush3 | M::IntListPush3 => lists::push_three,
+        M::FloatListAddAll | M::IntListAddAll => lists::add_part,
+        M::FloatListGet | M::IntListGet => collections::get,
+        M::FloatListSize | M::IntListSize => collections::size,
+        M::FloatListClear | M::IntListClear => collections::clear,
+        M::MeshArea => freeform::mesh_area,
+        M::MeshSetVertices | M::MeshSetVertexList => freeform::set_vertices,
+        M::MeshSetIndices | M::MeshSetIndexList => freeform::set_indices,
         M::MeshSetNormals => freeform::set_normals,
         M::MeshSetTextures => freeform::set_textures,
         M::ThrowablePrintStackTrace => print_stack_trace,

@@ -21,6 +21,7 @@ mod functions;
 mod light;
 pub mod moments;
 pub mod matrices;
+mod lists;
 mod methods;
 pub mod more;
 mod numbers;
