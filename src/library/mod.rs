@@ -6,6 +6,7 @@
 mod classes;
 mod constants;
 mod constructors;
+mod fields;
 mod functions;
 mod methods;
 mod signature;
@@ -14,7 +15,8 @@ mod types;
 pub use classes::ClassId;
 pub use constants::{ConstantValue, LibraryConstant, constant, constants};
 pub use constructors::{ConstructorId, constructors_of};
+pub use fields::{LibraryField, field_named};
 pub use functions::{FunctionId, functions_named};
-pub use methods::{LibraryField, MethodId, field_named, methods_named};
+pub use methods::{MethodId, methods_named};
 pub use signature::{Effect, Signature};
 pub use types::{Type, ValueType};
