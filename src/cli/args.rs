@@ -41,7 +41,7 @@ pub enum Action {
 /// The model.
 #[derive(Debug, Args)]
 pub struct ModelArg {
-    /// The model: a `.rgg` file, or a folder of them
+    /// The model: a `.rgg` file, a folder of them, or a packed GroIMP project (`.gsz`)
     pub model: PathBuf,
     /// Where files are that the model names otherwise: `C:/Users/me=data` (repeatable)
     #[arg(long, value_name = "FROM=TO")]

@@ -1,11 +1,12 @@
 //! Where the parts of a model are: its files, those they import, and the file beside it.
 //!
 //! A folder's own `.rgg` files belong to the model, and what they import, from any folder below; if it has none itself, all
-//! that lie below it. A single file brings the files that it imports from its own folder and those below.
+//! that lie below it. A single file brings the files that it imports from its own folder and those below. A packed project
+//! is a folder.
 
 use super::failure::Failure;
 use super::sources::placeless;
-use super::world::{Entry, World};
+use super::world::{Entry, World, folder_of};
 use crate::diag::SourceMap;
 use crate::diag::nearest;
 use crate::syntax::{ImportNames, imports};
@@ -81,20 +82,14 @@ impl Inputs {
         let name = model.display();
         let (mut found, base) = match world.entry(model) {
             Entry::Folder => (Self::in_folder(world, model)?, model),
-            _ if has_suffix(model, "gsz") => {
-                return Err(Failure::Usage(format!(
-                    "`{name}` is a packed GroIMP project: unpack it (it is a zip file: `unzip {name} -d project`) and name \
-                     the folder"
-                )));
-            }
-            _ if has_suffix(model, "gs") => {
-                return Err(Failure::Usage(format!(
-                    "`{name}` is a list of GroIMP project files: name the folder it stands in, or its `.rgg` file"
-                )));
+            // GroIMP's list of the files of a project: what it lists stands beside it.
+            Entry::File if has_suffix(model, "gs") => return Self::find(world, folder_of(model)),
+            Entry::Missing if has_suffix(model, "gs") || has_suffix(model, "gsz") => {
+                return Err(Failure::World(format!("there is no `{name}`")));
             }
             _ if !has_suffix(model, "rgg") => {
                 return Err(Failure::Usage(format!(
-                    "`{name}` is neither a `.rgg` file nor a folder"
+                    "`{name}` is neither a `.rgg` file nor a folder, nor a packed project (`.gsz`)"
                 )));
             }
             Entry::Device => {
@@ -130,6 +125,11 @@ impl Inputs {
             all.iter().filter(fits).cloned().collect()
         };
         let (mut models, mut sidecars) = (with("rgg"), with("toml"));
+        // A packed project has no place for a `.toml` of this program: it may stand beside it.
+        let beside = folder.with_extension("toml");
+        if has_suffix(folder, "gsz") && world.entry(&beside) == Entry::File {
+            sidecars = vec![beside];
+        }
         if models.is_empty() {
             models = tree(world, folder);
             models.retain(|path| has_suffix(path, "rgg"));
@@ -411,8 +411,11 @@ mod tests {
         assert_eq!(inputs.sidecar.as_deref(), Some(Path::new("a/a.toml")));
         assert_eq!(find("b/one.rgg").unwrap().sidecar, None);
         assert!(matches!(find("c"), Err(Failure::World(_))));
-        for wrong in ["c/readme.txt", "p.gsz", "p/project.gs"] {
-            assert!(matches!(find(wrong), Err(Failure::Usage(text)) if text.contains(wrong)));
+        assert!(
+            matches!(find("c/readme.txt"), Err(Failure::Usage(text)) if text.contains("readme"))
+        );
+        for wrong in ["c/none.gs", "c/none.gsz"] {
+            assert!(matches!(find(wrong), Err(Failure::World(text)) if text.contains(wrong)));
         }
         let missing = find("c/none.rgg").unwrap().read(&world);
         assert!(matches!(missing, Err(Failure::World(text)) if text.contains("c/none.rgg")));

@@ -1,5 +1,6 @@
 //! All that a run needs of the machine: files, the clock, memory.
 
+use super::packed::{self, Packed, Shelf};
 use super::project_files::{ListFolder, ReadFile, RealPath};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -88,10 +89,11 @@ pub trait World: Sync {
     fn free_memory(&self) -> Option<u64>;
 }
 
-/// The machine itself.
+/// The machine itself. Packed projects (`.gsz`) are folders in it that can be read.
 #[derive(Debug)]
 pub struct Machine {
     start: Instant,
+    shelf: Shelf,
 }
 
 impl Machine {
@@ -99,8 +101,39 @@ impl Machine {
     pub fn new() -> Self {
         Self {
             start: Instant::now(),
+            shelf: Shelf::default(),
         }
     }
+
+    /// The packed project that `path` is or leads into, with the rest of the path inside it.
+    fn packed<'p>(&self, path: &'p Path) -> Option<(io::Result<Arc<Packed>>, &'p Path)> {
+        let (archive, inside) = packed::split(path)?;
+        Some((self.shelf.open(archive, whole), inside))
+    }
+
+    /// What can read and list the same packed projects, given away.
+    fn again(&self) -> Self {
+        Self {
+            start: self.start,
+            shelf: self.shelf.clone(),
+        }
+    }
+}
+
+/// The content of a file on the disk.
+fn whole(path: &Path) -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    std::fs::File::open(path)?
+        .take(LARGEST_FILE + 1)
+        .read_to_end(&mut content)?;
+    not_too_large(content)
+}
+
+fn not_too_large(content: Vec<u8>) -> io::Result<Vec<u8>> {
+    if content.len() as u64 > LARGEST_FILE {
+        return Err(io::Error::other("it is larger than 256 MiB"));
+    }
+    Ok(content)
 }
 
 impl Default for Machine {
@@ -111,6 +144,13 @@ impl Default for Machine {
 
 impl World for Machine {
     fn entry(&self, path: &Path) -> Entry {
+        match self.packed(path) {
+            Some((Ok(packed), inside)) => return packed.entry(inside),
+            // A damaged project is a folder that cannot be listed: who lists it hears why.
+            Some((Err(_), inside)) if inside.as_os_str().is_empty() => return Entry::Folder,
+            Some((Err(_), _)) => return Entry::Missing,
+            None => {}
+        }
         match std::fs::metadata(path) {
             Ok(data) if data.is_dir() => Entry::Folder,
             Ok(data) if data.is_file() => Entry::File,
@@ -131,22 +171,20 @@ impl World for Machine {
     }
 
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let mut content = Vec::new();
-        std::fs::File::open(path)?
-            .take(LARGEST_FILE + 1)
-            .read_to_end(&mut content)?;
-        if content.len() as u64 > LARGEST_FILE {
-            return Err(io::Error::other("it is larger than 256 MiB"));
+        match self.packed(path) {
+            Some((packed, inside)) => not_too_large(packed?.read(inside, LARGEST_FILE + 1)?),
+            None => whole(path),
         }
-        Ok(content)
     }
 
     fn reader(&self) -> ReadFile {
-        Arc::new(|path| Self::new().read(path))
+        let world = self.again();
+        Arc::new(move |path| world.read(path))
     }
 
     fn lister(&self) -> ListFolder {
-        Arc::new(|path| Self::new().list(path))
+        let world = self.again();
+        Arc::new(move |path| world.list(path))
     }
 
     fn real_paths(&self) -> RealPath {
@@ -167,6 +205,9 @@ impl World for Machine {
     }
 
     fn head(&self, path: &Path, n: usize) -> io::Result<Vec<u8>> {
+        if let Some((packed, inside)) = self.packed(path) {
+            return packed?.read(inside, n as u64);
+        }
         let mut content = Vec::new();
         std::fs::File::open(path)?
             .take(n as u64)
@@ -175,6 +216,10 @@ impl World for Machine {
     }
 
     fn list(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+        if let Some((packed, inside)) = self.packed(folder) {
+            let names = packed?.list(inside)?;
+            return Ok(names.iter().map(|name| folder.join(name)).collect());
+        }
         let entries = std::fs::read_dir(folder)?;
         let mut paths = entries
             .map(|e| Ok(e?.path()))
@@ -193,6 +238,11 @@ impl World for Machine {
 
     fn replace(&self, path: &Path, content: &[u8]) -> io::Result<()> {
         let path = &self.destination(path);
+        if packed::split(path).is_some() {
+            return Err(io::Error::other(
+                "it would stand inside a packed project: unpack that, or map the path to another folder with `--path-map`",
+            ));
+        }
         let mut file = temporary(folder_of(path))?;
         file.write_all(content)?;
         file.as_file().sync_all()?;

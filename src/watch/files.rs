@@ -2,6 +2,7 @@
 
 use super::session::Event;
 use crate::pipeline::inputs::Inputs;
+use crate::pipeline::packed;
 use crate::pipeline::world::{Entry, World, folder_of};
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 use std::path::Path;
@@ -36,6 +37,10 @@ pub fn follow(
     if world.entry(model) == Entry::Folder {
         folders.push(model);
     }
+    // A packed project is one file.
+    for folder in &mut folders {
+        *folder = packed::split(folder).map_or(*folder, |(archive, _)| folder_of(archive));
+    }
     folders.sort_unstable();
     folders.dedup();
     for folder in folders {
@@ -47,7 +52,7 @@ pub fn follow(
 /// Whether a file in a watched folder may be a part of the model.
 fn belongs(path: &Path) -> bool {
     path.extension()
-        .is_some_and(|suffix| suffix == "rgg" || suffix == "toml")
+        .is_some_and(|suffix| suffix == "rgg" || suffix == "toml" || suffix == "gsz")
 }
 
 #[cfg(test)]
@@ -59,6 +64,7 @@ mod tests {
         for (name, expected) in [
             ("plant.rgg", true),
             ("plant.toml", true),
+            ("plant.gsz", true),
             ("plant.png", false),
             ("plant.rgg~", false),
         ] {
