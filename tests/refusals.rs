@@ -29,6 +29,12 @@ const CASES: &[(&str, &str, &str, &str)] = &[
         "scales",
     ),
     (
+        "regions",
+        "module A;\nvoid f() { println(count((* a:A, (a in cone(a, false, 45)) *))); }",
+        "in cone",
+        "location(x)",
+    ),
+    (
         "rates",
         "module A(float x);\nvoid f() [ a:A ::> a[x] :'= 1; ]",
         ":'=",

@@ -350,6 +350,7 @@ impl Checker<'_> {
 /// What other turtles call a command, in the words of this one.
 fn foreign_command(name: &str) -> Option<&'static str> {
     Some(match name.to_lowercase().as_str() {
+        "$" => "`AdjustLU`",
         "forward" | "fd" | "draw" | "line" => "`F(length)` to draw and walk",
         "move" | "walk" | "jump" => "`M(length)` to walk without drawing",
         "turn" | "yaw" | "left" | "right" | "rt" | "lt" => "`RU(degrees)` to turn",

@@ -144,6 +144,11 @@ impl Case<'_, '_> {
                 "rates (`:'=`)",
                 "compute the step yourself: `x[v] :+= rate * dt`",
             ),
+            "in" if self.first_word() != "for" => refuse(
+                span,
+                "regions (`x in cone(…)`)",
+                "compare positions: `location(x)`, `distance(x, y)` and `u.angle(v)` say where nodes stand",
+            ),
             "{" if self.follows_new() => refuse(
                 span,
                 "classes without a name",
