@@ -82,6 +82,13 @@
 //! T. Ize: Robust BVH Ray Traversal. Journal of Computer Graphics Techniques 2(2), 2013.
 //! <https://jcgt.org/published/0002/02/02/>
 //!
+//! # Jensen1996
+//! H. W. Jensen: Global Illumination using Photon Maps. Rendering Techniques (Eurographics Workshop on Rendering), 1996.
+//! <https://doi.org/10.1007/978-3-7091-7484-5_3>
+//!
+//! # Jensen2001
+//! H. W. Jensen: Realistic Image Synthesis Using Photon Mapping. A K Peters, 2001.
+//!
 //! # Kajiya1986
 //! J. Kajiya: The Rendering Equation. SIGGRAPH, 1986. <https://doi.org/10.1145/15922.15902>
 //!

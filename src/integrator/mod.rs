@@ -13,6 +13,7 @@ pub mod driver;
 pub mod medium;
 pub mod mis;
 pub mod path;
+pub mod photon;
 pub mod raytracer;
 pub mod sources;
 

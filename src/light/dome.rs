@@ -238,6 +238,12 @@ impl Dome {
         matches!(self.content, Content::Dark)
     }
 
+    /// Whether it shows land below the horizon, which [`sample`](Self::sample) leaves out.
+    #[must_use]
+    pub fn has_land(&self) -> bool {
+        matches!(self.content, Content::Landscape(_))
+    }
+
     /// Radiance from the direction `w` (unit), W/(m² sr) per channel.
     #[must_use]
     pub fn radiance(&self, w: DVec3) -> Rgb {

@@ -3,8 +3,10 @@
 use super::{Light, LightSample};
 use crate::color::Rgb;
 use crate::math::angle::Angle;
+use crate::math::frame::Frame;
 use crate::math::tolerance::UNIT_LENGTH;
-use glam::DVec3;
+use crate::math::warp;
+use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// Why a source cannot exist.
@@ -92,6 +94,22 @@ impl Light {
                     pdf_solid_angle: None,
                 })
             }
+        }
+    }
+
+    /// A direction in which light leaves a lamp at a point, chosen with a density in proportion to the intensity in that
+    /// direction: all carry the same power. `None` for parallel light. `u` is a point of the unit square.
+    #[must_use]
+    pub fn emit(&self, u: DVec2) -> Option<DVec3> {
+        match *self {
+            Self::Point { .. } => Some(warp::sphere(u)),
+            Self::Spot {
+                axis, inner, outer, ..
+            } => {
+                let local = warp::direction(beam_cosine(inner, outer, u.x), u.y);
+                Some(Frame::from_normal(axis).to_world(local).normalize())
+            }
+            Self::Directional { .. } => None,
         }
     }
 
@@ -206,6 +224,27 @@ fn falloff(cos: f64, inner: Angle, outer: Angle) -> f64 {
     }
 }
 
+/// The cosine of an angle in a beam, chosen in proportion to the falloff by a uniform number.
+fn beam_cosine(inner: Angle, outer: Angle, u: f64) -> f64 {
+    let (one, half) = (1.0 - inner.cos(), 0.5 * (inner.cos() - outer.cos()));
+    let flux = u * (one + half);
+    if flux < one || half <= 0.0 {
+        return 1.0 - flux;
+    }
+    // From the outer edge in, the falloff t²(3 - 2t) has the integral t³ - t⁴/2: bisection, since it only grows.
+    let wanted = 0.5 * (1.0 - (flux - one) / half);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..53 {
+        let t: f64 = 0.5 * (low + high);
+        if t * t * t * (1.0 - 0.5 * t) < wanted {
+            low = t;
+        } else {
+            high = t;
+        }
+    }
+    outer.cos() + 0.5 * (low + high) * (inner.cos() - outer.cos())
+}
+
 /// ∫ of the falloff over the sphere, in steradian: the soft edge counts half.
 fn beam_solid_angle(inner: Angle, outer: Angle) -> f64 {
     TAU * (1.0 - 0.5 * (inner.cos() + outer.cos()))
@@ -214,8 +253,6 @@ fn beam_solid_angle(inner: Angle, outer: Angle) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::warp;
-    use glam::DVec2;
 
     #[test]
     fn every_lamp_emits_its_power() {
@@ -246,6 +283,37 @@ mod tests {
             }
             assert!((flux.b / 70.0 - 1.0).abs() < 2e-3, "{lamp:?}: {flux:?}");
             assert!((lamp.power(1.0) - power).map(f64::abs).max_channel() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn beams_are_emitted_in_proportion_to_their_intensity() {
+        // The cosines of directions chosen evenly have the distribution that integrating the falloff gives.
+        for (inner, outer) in [(20.0, 35.0), (0.0, 180.0), (30.0, 30.0), (0.0, 1.0)] {
+            let (inner, outer) = (Angle::deg(inner), Angle::deg(outer));
+            let lamp = Light::spot(DVec3::ZERO, DVec3::X, inner, outer, Rgb::WHITE);
+            let n = 2000;
+            let cosine = |i| {
+                let u = DVec2::new((f64::from(i) + 0.5) / f64::from(n), 0.3);
+                lamp.emit(u).unwrap().x
+            };
+            for quantile in [200, 900, 1500, 1999] {
+                let cut = cosine(quantile);
+                // Flux within that cosine, in 4000 steps of the midpoint rule.
+                let steps = 4000;
+                let width = (1.0 - cut) / f64::from(steps);
+                let flux: f64 = (0..steps)
+                    .map(|k| {
+                        falloff(cut + (f64::from(k) + 0.5) * width, inner, outer) * width * TAU
+                    })
+                    .sum();
+                let share = (f64::from(quantile) + 0.5) / f64::from(n);
+                let found = flux / beam_solid_angle(inner, outer);
+                assert!(
+                    (found - share).abs() < 1e-4,
+                    "{inner:?} {outer:?}: {found} {share}"
+                );
+            }
         }
     }
 

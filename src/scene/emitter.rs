@@ -10,8 +10,8 @@ use super::query::Hit;
 use super::subtended::{SeenBall, SeenRectangle};
 use crate::geometry::area::RoundArea;
 use crate::geometry::unit::UnitShape;
-use crate::math::PrimitiveId;
-use crate::math::tolerance::SIMILARITY;
+use crate::math::tolerance::{SIMILARITY, SPAWN_SAFETY, gamma};
+use crate::math::{PrimitiveId, Ray};
 use glam::{DAffine3, DVec3};
 
 /// How many emitters a scene may have; more are a mistake or need another kind of light source.
@@ -125,6 +125,23 @@ impl Emitter {
                     pdf_area: round.pdf_area(normal),
                 }
             }
+        }
+    }
+
+    /// A ray that leaves the emitter at a point chosen by [`Emitter::sample`], starting off the surface on the side of
+    /// `direction` (unit).
+    #[must_use]
+    pub fn spawn_ray(&self, at: &EmitterSample, direction: DVec3) -> Ray {
+        // The point is the sum of a corner or centre and of edges or radii, each of which its size bounds.
+        let size = at.position.abs().max_element() + self.area.sqrt();
+        let off = (SPAWN_SAFETY * gamma(32) * size).copysign(direction.dot(at.normal));
+        let skip = match self.form {
+            Form::Triangle(..) | Form::Parallelogram(..) => self.primitive,
+            Form::Cube(_) | Form::Ball { .. } | Form::Round(_) => PrimitiveId::NONE,
+        };
+        Ray {
+            skip,
+            ..Ray::new(at.position + at.normal * off, direction)
         }
     }
 

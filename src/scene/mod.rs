@@ -8,6 +8,7 @@
 //!   walk      how it gets there: through the hierarchies of groups within groups
 //!   surface   what shading needs to know there
 //!   emitter   surfaces that shine, for sampling
+//!   extents   where the surfaces of some materials are
 //! ```
 //! Groups within groups are never copied: a ray is carried into the frame of each instance it enters. A primitive of the
 //! world is therefore not stored anywhere; its number, a [`PrimitiveId`](crate::math::PrimitiveId), counts through all
@@ -44,6 +45,7 @@ mod bake;
 pub mod description;
 mod emitter;
 mod error;
+mod extents;
 mod group;
 mod outline;
 mod placement;
@@ -56,6 +58,7 @@ mod walk;
 
 pub use emitter::{Emitter, EmitterId, EmitterSample, TowardSample};
 pub use error::{Problem, SceneError};
+pub use extents::Extents;
 pub use query::Hit;
 pub use surface::SurfacePoint;
 

@@ -1,0 +1,273 @@
+//! From sources to photons: which source, from where, in which direction, and with how much power.
+//!
+//! A photon's power is what its source sends along a ray, divided by the density with which that ray was chosen and by the number
+//! of photons, so that all together carry the power of the sources, whatever the choices.
+
+use super::source::{Source, Start};
+use super::target::Targets;
+use crate::color::Rgb;
+use crate::light::Dome;
+use crate::light::SunDisk;
+use crate::material::Material;
+use crate::math::{Bounds3, Ray, rng};
+use crate::sampler::{Sampler, SamplerKind, Use};
+use crate::scene::{EmitterId, Scene};
+
+/// What photons are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// All surfaces.
+    Everything,
+    /// Surfaces that mirror or refract into single directions: caustics.
+    Specular,
+}
+
+/// Share of the photons that sources get by the power that is aimed at something.
+const BY_POWER: f64 = 0.8;
+/// Share that is split evenly over the kinds of sources, within them by power: the sky beside the sun.
+const BY_KIND: f64 = 0.1;
+// The rest is split evenly over kinds, and within them evenly over lamps and by area over shining surfaces: so a lamp in a dark
+// corner has photons even if another is 10¹² times as strong.
+
+/// Photons that are tried to learn how much of a source's power is aimed at something, of all sources together and of one.
+const PILOTS: usize = 1 << 16;
+const PILOTS_OF_ONE: usize = 1 << 10;
+
+/// How far around the scene's box parallel light and sky are followed where infinite planes throw light back: boxes so many times
+/// as wide, and their share of the photons relative to the box itself. Leaves out about 2 % of what a level plane throws onto an
+/// object as wide as high.
+const RINGS: [(f64, f64); 2] = [(3.0, 0.5), (9.0, 0.5)];
+
+/// Boxes asked of the scene.
+const BOXES: usize = 4096;
+
+/// Separates the random numbers of photons from all others.
+const STREAM: u64 = 0x50_4847_544f_4e53;
+
+/// The sources of a scene, ready to send photons.
+#[derive(Debug)]
+pub struct Emission<'s> {
+    pub(super) scene: &'s Scene,
+    pub(super) dome: Dome,
+    pub(super) sun: Option<SunDisk>,
+    pub(super) targets: Targets,
+    pub(super) aim: Aim,
+    pub(super) has_planes: bool,
+    sources: Vec<Source>,
+    /// Probability of each source, and the sums up to and with it.
+    probabilities: Vec<f64>,
+    cumulated: Vec<f64>,
+    power: Rgb,
+}
+
+/// A photon that leaves a source.
+#[derive(Clone, Debug)]
+pub struct Photon {
+    /// Where it goes.
+    pub ray: Ray,
+    /// What it carries, W per channel.
+    pub power: Rgb,
+    /// Whether the surface it meets gets this light also from [`Sources`](crate::integrator::sources::Sources), as direct light.
+    pub is_direct: bool,
+    /// Random numbers of the rest of its way.
+    pub sampler: Sampler,
+}
+
+impl<'s> Emission<'s> {
+    /// Gathers the sources of `scene`. Shining infinite planes send no photons.
+    #[must_use]
+    pub fn new(scene: &'s Scene, aim: Aim) -> Self {
+        let environment = scene.environment();
+        let sun = environment.sun.clone();
+        let sun = sun.filter(|sun| !sun.irradiance.is_black());
+        let mut emission = Self {
+            scene,
+            dome: Dome::new(environment),
+            sun,
+            targets: targets(scene, aim),
+            aim,
+            has_planes: scene.stats().planes > 0,
+            sources: Vec::new(),
+            probabilities: Vec::new(),
+            cumulated: Vec::new(),
+            power: Rgb::BLACK,
+        };
+        emission.sources = emission.find_sources();
+        emission.weigh();
+        emission
+    }
+
+    /// Power of all photons together, W per channel: what the sources send towards the target. An estimate where that is not
+    /// known on paper.
+    #[must_use]
+    pub fn power(&self) -> Rgb {
+        self.power
+    }
+
+    /// Whether no photon carries anything.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        self.cumulated.is_empty()
+    }
+
+    /// Photon number `index` of `n`; a pure function of its arguments. `None` if it carries nothing.
+    ///
+    /// The photons of a source are spread together over its surface and directions. With other seeds come independent photons.
+    #[must_use]
+    pub fn photon(&self, index: u64, n: u64, seed: u64) -> Option<Photon> {
+        // Systematic sampling: source s gets the photons whose number falls into its part of 0..n, the bounds at random.
+        let offset = rng::unit_f64(rng::hash(&[seed, STREAM]));
+        let at = (index as f64 + offset) / n as f64;
+        let chosen = self.cumulated.partition_point(|end| *end <= at);
+        let chosen = chosen.min(self.cumulated.len().checked_sub(1)?);
+        let begin = chosen
+            .checked_sub(1)
+            .map_or(0.0, |last| self.cumulated[last]);
+        let first = (begin * n as f64 - offset).ceil().max(0.0) as u64;
+        let nth = index.saturating_sub(first);
+        let stream = rng::hash(&[seed, STREAM, chosen as u64, nth >> 32]);
+        let sampler = Sampler::new(SamplerKind::OwenSobol, stream, nth as u32);
+        let start = self.start(self.sources[chosen], &sampler)?;
+        let share = n as f64 * self.probabilities[chosen];
+        let power = start.power / share;
+        (!power.is_black() && power.is_finite()).then_some(Photon {
+            ray: start.ray,
+            power,
+            is_direct: start.is_direct,
+            sampler,
+        })
+    }
+
+    fn start(&self, source: Source, sampler: &Sampler) -> Option<Start> {
+        let place = sampler.point(Use::Light(0));
+        let direction = sampler.point(Use::Direction);
+        self.leave(source, place, direction)
+    }
+
+    fn find_sources(&self) -> Vec<Source> {
+        let scene = self.scene;
+        let mut sources: Vec<Source> = (0..scene.lights().len()).map(Source::Lamp).collect();
+        sources.extend(self.sun.as_ref().map(|_| Source::Sun));
+        if !self.dome.is_dark() {
+            sources.push(Source::Sky);
+            if !self.land_radiance().is_black() {
+                sources.push(Source::Land);
+            }
+        }
+        for (id, emitter) in (0..).zip(scene.emitters()) {
+            let material = scene.material(emitter.material);
+            let shining = [true, false].into_iter();
+            let shining = shining.filter(|side| !material.emitted_radiance(*side).is_black());
+            sources.extend(shining.map(|side| Source::Emitter(EmitterId(id), side)));
+        }
+        sources
+    }
+
+    /// Decides how often each source is chosen.
+    fn weigh(&mut self) {
+        let n_pilots = (PILOTS / self.sources.len().max(1)).clamp(4, PILOTS_OF_ONE);
+        let powers: Vec<Rgb> = (0..)
+            .zip(&self.sources)
+            .map(|(at, source)| {
+                let known = self.known_power(*source);
+                known.unwrap_or_else(|| self.pilot(*source, at, n_pilots))
+            })
+            .collect();
+        let shares = shares(&self.sources, &powers, |source| self.size(source));
+        let total: f64 = shares.iter().sum();
+        if !(total > 0.0 && total.is_finite()) {
+            self.sources.clear();
+            return;
+        }
+        self.power = powers.into_iter().sum();
+        self.probabilities = shares.iter().map(|share| share / total).collect();
+        let mut sum = 0.0;
+        let sums = self.probabilities.iter().map(|p| {
+            sum += p;
+            sum
+        });
+        self.cumulated = sums.collect();
+    }
+
+    /// The mean power of a few photons of a source.
+    fn pilot(&self, source: Source, at: u64, n: usize) -> Rgb {
+        let sampler = |index| Sampler::new(SamplerKind::OwenSobol, rng::hash(&[STREAM, at]), index);
+        let starts = (0..n as u32).filter_map(|index| self.start(source, &sampler(index)));
+        let powers = starts
+            .map(|start| start.power)
+            .filter(|power| power.is_finite());
+        powers.sum::<Rgb>() / n as f64
+    }
+
+    /// What sources of one kind share evenly: one for each, or the area of what has one, m².
+    fn size(&self, source: Source) -> f64 {
+        match source {
+            Source::Emitter(id, _) => self.scene.emitters()[id.0 as usize].area(),
+            Source::Lamp(_) | Source::Sun | Source::Sky | Source::Land => 1.0,
+        }
+    }
+}
+
+/// How often each source is chosen, not normalised.
+fn shares(sources: &[Source], powers: &[Rgb], size: impl Fn(Source) -> f64) -> Vec<f64> {
+    // Beyond any number of watts that makes sense sources are told apart no more, so that sums stay finite.
+    let watts: Vec<f64> = powers.iter().map(|power| power.sum().min(1e150)).collect();
+    let (mut of_kind, mut sizes) = ([0.0; Source::KINDS], [0.0; Source::KINDS]);
+    for (source, watts) in sources.iter().zip(&watts) {
+        if *watts > 0.0 {
+            of_kind[source.kind()] += watts;
+            sizes[source.kind()] += size(*source);
+        }
+    }
+    let total: f64 = of_kind.iter().sum();
+    let n_kinds = of_kind.iter().filter(|watts| **watts > 0.0).count() as f64;
+    let share = |(source, watts): (&Source, &f64)| {
+        if *watts <= 0.0 {
+            return 0.0;
+        }
+        let kind = source.kind();
+        let within = watts / of_kind[kind];
+        let even = size(*source) / sizes[kind];
+        BY_POWER * watts / total
+            + BY_KIND * within / n_kinds
+            + (1.0 - BY_POWER - BY_KIND) * even / n_kinds
+    };
+    sources.iter().zip(&watts).map(share).collect()
+}
+
+/// What light is aimed at.
+fn targets(scene: &Scene, aim: Aim) -> Targets {
+    let has_planes = scene.stats().planes > 0;
+    if aim == Aim::Specular {
+        let found = scene.extents_of(Material::is_specular, BOXES);
+        if !found.has_planes {
+            return Targets::new(&found.boxes, false);
+        }
+    }
+    let bounds = scene.bounds();
+    if bounds.is_empty() {
+        return Targets::new(&[], has_planes);
+    }
+    let mut targets = Targets::new(&[bounds], has_planes);
+    if has_planes && aim == Aim::Everything {
+        // Along planes the box grows, across them nothing is thrown back.
+        let normals: Vec<_> = scene.plane_normals().collect();
+        let half = bounds.diagonal() * 0.5;
+        let reach = half.max_element();
+        for (factor, share) in RINGS {
+            let mut wide = bounds;
+            for axis in 0..3 {
+                let is_across = normals.iter().all(|normal| normal[axis].abs() > 0.999);
+                if !is_across {
+                    let more = half[axis].max(reach) * factor - half[axis];
+                    wide.min[axis] -= more;
+                    wide.max[axis] += more;
+                }
+            }
+            // As many photons in the wider box as `share` of those in the box itself.
+            let area = |b: &Bounds3| b.surface_area().max(f64::MIN_POSITIVE);
+            targets.push(wide, share * area(&bounds) / area(&wide));
+        }
+    }
+    targets
+}
