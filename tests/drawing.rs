@@ -30,7 +30,7 @@ fn grow(text: &str) -> Growth {
 /// Draws what hangs on `M(0)`: brackets at the very beginning of a rule would come in reverse order, as in GroIMP.
 fn draw(rules: &str, modules: &str) -> Interpretation {
     let text = format!("{modules}\nprotected void init() [ Axiom ==> M(0) {rules}; ]");
-    interpret(&mut grow(&text), Limits::default()).expect("it can be drawn")
+    interpret(&mut grow(&text).sketch(), Limits::default()).expect("it can be drawn")
 }
 
 fn shapes(drawn: &Interpretation) -> &[PlacedShape] {
@@ -46,7 +46,7 @@ fn reflectance(drawn: &Interpretation, at: usize) -> Rgb {
 #[test]
 fn bodies_of_the_golden_model() {
     let text = std::fs::read_to_string("tests/golden/40-instantiation/model.rgg").unwrap();
-    let drawn = interpret(&mut grow(&text), Limits::default()).unwrap();
+    let drawn = interpret(&mut grow(&text).sketch(), Limits::default()).unwrap();
     let mut owners: Vec<&str> = shapes(&drawn)
         .iter()
         .map(|shape| drawn.organs.type_name(shape.organ).unwrap())
@@ -147,7 +147,7 @@ fn a_forest_of_instances_costs_one_tree() {
 #[test]
 fn failures_name_the_organ_and_its_module() {
     let text = "module Bad(float x) ==> F(x / 0);\nprotected void init() [ Axiom ==> Bad(0); ]";
-    let failure = interpret(&mut grow(text), Limits::default()).unwrap_err();
+    let failure = interpret(&mut grow(text).sketch(), Limits::default()).unwrap_err();
     assert!(
         failure.message.contains("in the body of `Bad`"),
         "{}",
@@ -157,7 +157,7 @@ fn failures_name_the_organ_and_its_module() {
 
     let text = "module Endless(int n) ==> Endless(n + 1);\nprotected void init() [ Axiom ==> Endless(0); ]";
     let mut growth = grow(text);
-    let failure = interpret(&mut growth, Limits::default()).unwrap_err();
+    let failure = interpret(&mut growth.sketch(), Limits::default()).unwrap_err();
     assert_eq!(failure.slug, "body-depth");
     let nodes = growth.graph().n_nodes();
     assert!(nodes < 10, "{nodes} nodes: bodies left theirs behind");
@@ -226,7 +226,7 @@ fn locations_know_where_axes_begin_and_end() {
         public void run() [ (* c:Cylinder *) Sphere ==> Sphere(10 * endlocation(c).z - location(c).z); ]";
     let mut growth = grow(text);
     growth.step().expect("it runs");
-    let drawn = interpret(&mut growth, Limits::default()).unwrap();
+    let drawn = interpret(&mut growth.sketch(), Limits::default()).unwrap();
     assert_eq!(heights(&drawn), [-1.0, 6.0]);
     let Shape::Sphere { radius } = shapes(&drawn)[1].shape else {
         panic!("a ball")
@@ -273,12 +273,12 @@ fn a_grid_of_copies() {
     };
     let huge = "protected void init() [ Axiom ==> GridClonerNode(2000000000, 1, 2000000000, 1) Sphere(1); ]";
     assert!(
-        interpret(&mut grow(huge), limits).is_err(),
+        interpret(&mut grow(huge).sketch(), limits).is_err(),
         "memory ends it"
     );
     let nested = "GridClonerNode(1, 1, 1, 1) ".repeat(100);
     let text = format!("protected void init() [ Axiom ==> {nested} Sphere(1); ]");
-    let failure = interpret(&mut grow(&text), Limits::default()).unwrap_err();
+    let failure = interpret(&mut grow(&text).sketch(), Limits::default()).unwrap_err();
     assert_eq!(failure.slug, "instance-depth");
 }
 
@@ -296,7 +296,7 @@ fn hidden_layers_are_not_drawn_and_do_not_shine() {
             hidden: layers,
             ..Limits::default()
         };
-        let drawn = interpret(&mut grow(&text), limits).unwrap();
+        let drawn = interpret(&mut grow(&text).sketch(), limits).unwrap();
         (shapes(&drawn).len(), drawn.scene.lights.len())
     };
     assert_eq!(counts(&[]), (6, 1), "as in GroIMP all are shown at first");
@@ -337,8 +337,8 @@ protected void init() [
   Axiom ==> M(0) [Leaf(4)] [Leaf(9)];
 ]";
     let mut growth = grow(text);
-    let drawn = interpret(&mut growth, Limits::default()).unwrap();
-    let again = interpret(&mut growth, Limits::default()).unwrap();
+    let drawn = interpret(&mut growth.sketch(), Limits::default()).unwrap();
+    let again = interpret(&mut growth.sketch(), Limits::default()).unwrap();
     let meshes = |of: &Interpretation| {
         let shapes = of.scene.groups.iter().flat_map(|group| &group.shapes);
         shapes.filter(|s| matches!(s.shape, Shape::Mesh(_))).count()

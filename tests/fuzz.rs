@@ -416,7 +416,7 @@ fn run(text: &str, reached: &mut Reached) {
         body_nodes: 5_000,
         ..interpret::Limits::default()
     };
-    reached.drawn += u64::from(interpret::interpret(&mut growth, limits).is_ok());
+    reached.drawn += u64::from(interpret::interpret(&mut growth.sketch(), limits).is_ok());
 }
 
 /// The process of one batch: `UNDERSTORY_FUZZ_RANGE=A..B`.

@@ -332,7 +332,7 @@ fn draw_with(before: &str, rules: &str) -> Result<Interpretation, Box<Diagnostic
     ];
     growth.set_files(Box::new(Files(files.into())));
     growth.init().unwrap();
-    interpret(&mut growth, Limits::default())
+    interpret(&mut growth.sketch(), Limits::default())
 }
 
 #[test]

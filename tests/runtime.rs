@@ -394,8 +394,8 @@ fn bodies_make_floating_nodes() {
     let ty = graph.types().find("A").unwrap();
     let node = graph.extent(ty).next().unwrap();
     let before = model.growth.hash();
-    let made = model.growth.instantiate(node).unwrap();
+    let made = model.growth.sketch().instantiate(node).unwrap();
     assert_eq!((made.nodes.len(), made.heads.len()), (6, 3));
-    model.growth.free(made);
+    model.growth.sketch().free(made);
     assert_eq!((model.growth.hash(), model.growth.total()), (before, 1));
 }

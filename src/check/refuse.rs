@@ -56,13 +56,12 @@ const TYPES: &[(&[&str], &str)] = &[
     (
         &[
             "FluxLightModelTag",
-            "MeasureMode",
             "Measurement",
             "ChannelSPD",
             "IrregularSpectralCurve",
             "ChromaticitySPD",
         ],
-        "spectra are not computed: write `LightModel`, with red, green and blue as three bands",
+        "spectra are not computed: take the three bands of a `Spectrum3d`, such as `lm.getAbsorbedPower3d(node)`",
     ),
     (
         &[

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::files::{ModelFiles, NoFiles};
+use super::light_model::{LightSolver, NoSolver};
 use super::memory::{Charge, Meter};
 use super::object::Object;
 use super::program::Program;
@@ -83,6 +84,8 @@ pub struct Machine {
     pub charts: Vec<(Arc<Object>, i32)>,
     /// The files that the model may use.
     pub files: Box<dyn ModelFiles>,
+    /// What traces the light of its light models.
+    pub light: Box<dyn LightSolver>,
     /// What the model has written, by place: the whole text, and its share of the memory budget.
     pub written: BTreeMap<String, (String, Charge)>,
     /// Bits of `setDerivationMode`.
@@ -159,6 +162,7 @@ impl Machine {
             tables: BTreeMap::new(),
             charts: vec![],
             files: Box::new(NoFiles),
+            light: Box::new(NoSolver),
             written: BTreeMap::new(),
             derivation_mode: DEFAULT_MODE,
             step: 0,

@@ -13,6 +13,7 @@ pub mod files;
 pub mod freeform;
 pub mod hooks;
 pub mod library;
+pub mod light_model;
 pub mod machine;
 pub mod map;
 pub mod memory;

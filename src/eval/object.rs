@@ -9,6 +9,7 @@ use super::freeform::Freeform;
 use super::library::data::Table;
 use super::library::files::{TextReader, TextWriter};
 use super::library::more::Tokens;
+use super::light_model::LightModel;
 use super::map::JavaMap;
 use super::memory::Charge;
 use super::random::JavaRandom;
@@ -17,7 +18,6 @@ use super::value::{Value, free};
 use crate::check::model::MethodId;
 use crate::graph::TypeId;
 use crate::library::ClassId;
-use crate::turtle::Layers;
 
 /// An object of a library class.
 #[derive(Debug)]
@@ -40,12 +40,12 @@ pub enum Data {
     Phong(Box<Phong>),
     /// A `Mirror`, `Metal`, `Glass`, `Pane` or `LeafShader`.
     Finish(Box<Finish>),
-    /// A `SideSwitchShader` or `MixShader`.
+    /// A `SideSwitchShader`, `MixShader` or `AlgorithmSwitchShader`.
     Shaders(Box<Shaders>),
     /// A source of light.
     Light(Light),
     /// A light model.
-    LightModel(LightModel),
+    LightModel(Box<LightModel>),
     /// A generator of its own.
     Random(Box<JavaRandom>),
     /// A list.
@@ -150,9 +150,9 @@ pub struct Finish {
 /// Two shaders in one; its class says how they share the surface.
 #[derive(Clone, Debug)]
 pub struct Shaders {
-    /// The front one.
+    /// The front one; the one for pictures.
     pub first: Value,
-    /// The back one.
+    /// The back one; the one for light models.
     pub second: Value,
     /// The second's share of a mixture, 0..=1.
     pub share: f64,
@@ -203,21 +203,6 @@ impl Light {
             exponent: 1.0,
         }
     }
-}
-
-/// Settings of a light model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LightModel {
-    /// Number of rays.
-    pub rays: i32,
-    /// Greatest number of reflections.
-    pub depth: i32,
-    /// Seed of its generator.
-    pub seed: i64,
-    /// Power in W below which rays end.
-    pub min_power: f64,
-    /// Layers whose nodes take no part.
-    pub hidden: Layers,
 }
 
 impl Object {

@@ -111,6 +111,29 @@ impl Trap {
         )
     }
 
+    /// What stopped something that the model asked for at `span` and that has a message of its own.
+    pub fn of_diagnostic(fault: Diagnostic, span: Span) -> Self {
+        if fault.slug == "cancelled" {
+            return Self::new(Cause::Cancelled, Some(span));
+        }
+        let place = fault.primary.map_or(span, |label| label.span);
+        let hint = fault.hints.join("; ");
+        let trap = Self::limit(fault.slug, fault.message, &hint, Some(place));
+        let trap = fault
+            .secondary
+            .into_iter()
+            .fold(trap, |trap, label| trap.pointing(label.span, &label.text));
+        let trap = fault
+            .trace
+            .into_iter()
+            .fold(trap, |trap, doing| trap.during(doing.text, doing.at));
+        if place == span {
+            trap
+        } else {
+            trap.pointing(span, "asked for here")
+        }
+    }
+
     /// A spent memory budget.
     pub fn memory(over: OverBudget, span: Option<Span>) -> Self {
         let OverBudget { wanted, limit } = over;
@@ -221,7 +244,7 @@ impl Trap {
         diagnostic
             .secondary
             .extend(notes.into_iter().map(|(span, text)| Label { span, text }));
-        diagnostic.hints.extend(hint);
+        diagnostic.hints.extend(hint.filter(|hint| !hint.is_empty()));
         let lines = |traced: Vec<Traced>| traced.into_iter().map(Traced::line);
         diagnostic.trace.extend(lines(inner));
         if n_omitted > 0 {

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use super::deep::{SHALLOW, with_deep_stack};
+use super::sketch::Sketch;
 use crate::check::model::{MethodId, Model};
 use crate::diag::{Diagnostic, Span, nearest};
 use crate::eval::files::ModelFiles;
 use crate::eval::library::data::Table;
+use crate::eval::light_model::LightSolver;
 use crate::eval::object::Data;
-use crate::eval::{Limits, Machine, Output, Program, Purity, Setup, StopSign, Trap, Value};
-use crate::graph::{Graph, NodeId, TypeId};
-use crate::rewrite::Instantiated;
+use crate::eval::{Limits, Machine, Output, Program, Setup, StopSign, Trap, Value};
+use crate::graph::Graph;
 
 /// How a model is to grow.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,8 +42,6 @@ pub struct Growth {
     machine: Machine,
     options: GrowthOptions,
     n_steps: u64,
-    /// Bytes of stack that an instantiation body may use.
-    body_stack: usize,
 }
 
 impl Growth {
@@ -69,7 +68,6 @@ impl Growth {
             machine,
             options,
             n_steps: 0,
-            body_stack: SHALLOW,
         })
     }
 
@@ -81,11 +79,6 @@ impl Growth {
     /// The files that the model may use from now on; none without this.
     pub fn set_files(&mut self, files: Box<dyn ModelFiles>) {
         self.machine.files = files;
-    }
-
-    /// The files that the model may use.
-    pub fn files(&self) -> &dyn ModelFiles {
-        &*self.machine.files
     }
 
     /// What the model has written so far: places as its files name them, and whole texts.
@@ -203,58 +196,24 @@ impl Growth {
         self.graph().digest()
     }
 
-    /// Whether nodes of a type have an instantiation body, and whether equal fields then give equal geometry.
-    pub fn instantiation(&self, ty: TypeId) -> Option<Purity> {
-        self.program.instantiation(ty)
-    }
-
-    /// Where a module is declared; `None` for built-in types.
-    pub fn declared_at(&self, ty: TypeId) -> Option<Span> {
-        self.program.declared_at(ty)
-    }
-
-    /// Where in the model's text nodes of a type are made.
-    pub fn made_at(&self, ty: TypeId) -> &[Span] {
-        self.program.made_at(ty)
-    }
-
     /// Draws: instantiation bodies that run in `draw` have room for recursion and share one budget of turns and calls.
-    pub fn drawing<R: Send>(&mut self, draw: impl FnOnce(&mut Self) -> R + Send) -> R {
+    pub fn drawing<R: Send>(&mut self, draw: impl FnOnce(&mut Sketch<'_>) -> R + Send) -> R {
+        let (program, machine, step) = (&*self.program, &mut self.machine, self.n_steps);
         with_deep_stack(|bytes| {
-            self.machine.begin(bytes);
+            machine.begin(bytes);
             // The other half is for the bodies that stand in bodies.
-            self.body_stack = bytes / 2;
-            let drawn = draw(self);
-            self.body_stack = SHALLOW;
-            drawn
+            draw(&mut Sketch::after_step(program, machine, step, bytes / 2))
         })
     }
 
-    /// Whether the user wants the model to stop.
-    pub fn is_stopped(&self) -> bool {
-        self.machine.is_stopped()
+    /// The model as it stands, drawn on the caller's own stack.
+    pub fn sketch(&mut self) -> Sketch<'_> {
+        Sketch::after_step(&self.program, &mut self.machine, self.n_steps, SHALLOW)
     }
 
-    /// Makes the floating nodes that the instantiation body of `node` draws (none, if it has none); give them back to
-    /// [`Growth::free`]. Nodes among them may have bodies of their own.
-    ///
-    /// # Errors
-    /// What went wrong in the body.
-    pub fn instantiate(&mut self, node: NodeId) -> Result<Instantiated, Box<Diagnostic>> {
-        self.machine.stand(self.body_stack);
-        self.program
-            .instantiate(node, &mut self.machine)
-            .map_err(|trap| {
-                let step = self.n_steps;
-                Box::new(trap.into_diagnostic().during(format!("after step {step}")))
-            })
-    }
-
-    /// Frees what [`Growth::instantiate`] made.
-    pub fn free(&mut self, mut made: Instantiated) {
-        self.machine
-            .queue
-            .free_instantiated(&mut self.machine.graph, &mut made);
+    /// What traces the light of the model's light models from now on; nothing does without this.
+    pub fn set_light_solver(&mut self, solver: Box<dyn LightSolver>) {
+        self.machine.light = solver;
     }
 
     fn entry(&self) -> Result<MethodId, Box<Diagnostic>> {

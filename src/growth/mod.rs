@@ -2,5 +2,7 @@
 
 mod deep;
 mod grow;
+mod sketch;
 
 pub use grow::{Growth, GrowthOptions};
+pub use sketch::Sketch;

@@ -6,8 +6,8 @@ use crate::material::Material;
 
 /// Objects of the model that say how a surface looks or what a lamp sends out.
 pub trait Appearance: Payload {
-    /// The surface it describes, if it is a shader. Its numbers are the model's and may be impossible.
-    fn surface(&self) -> Option<Material>;
+    /// The surface it describes for this purpose, if it is a shader. Its numbers are the model's and may be impossible.
+    fn surface(&self, purpose: Purpose) -> Option<Material>;
 
     /// The lamp it describes, if it is a light.
     fn lamp(&self) -> Option<Lamp>;
@@ -17,6 +17,16 @@ pub trait Appearance: Payload {
 
     /// The text it is, if it is one, such as the name of a file.
     fn words(&self) -> Option<&str>;
+}
+
+/// What a model is drawn for: an `AlgorithmSwitchShader` looks different for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be looked at.
+    #[default]
+    Picture,
+    /// To know what light its organs get.
+    LightModel,
 }
 
 /// A lamp, as the model describes it.

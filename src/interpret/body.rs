@@ -133,7 +133,8 @@ impl<S: Source> Painter<'_, S> {
         let group = &canvas.group;
         let is_small = group.shapes.len() <= COPIED
             && group.instances.is_empty()
-            && canvas.about.lights.is_empty();
+            && canvas.about.lights.is_empty()
+            && canvas.about.sensors.is_empty();
         let prototype = if is_small {
             Prototype::Small(canvas.group.shapes)
         } else {

@@ -1,6 +1,7 @@
 //! What has been drawn so far, of the world or of a group.
 
 use super::lamps::placed;
+use super::sensors::Sensor;
 use super::shapes::bounds;
 use crate::light::Light;
 use crate::math::Bounds3;
@@ -34,6 +35,15 @@ pub(super) struct About {
     pub(super) shines: bool,
     /// Sources without a surface, in the group's frame.
     pub(super) lights: Vec<Light>,
+    /// Sensors, in the group's frame.
+    pub(super) sensors: Vec<Sensor>,
+}
+
+impl About {
+    /// Bytes that every placement of the group takes for itself.
+    pub(super) fn own_bytes(&self) -> usize {
+        size_of_val(&*self.lights) + size_of_val(&*self.sensors)
+    }
 }
 
 impl Default for Canvas {
@@ -45,6 +55,7 @@ impl Default for Canvas {
                 has_plane: false,
                 shines: false,
                 lights: Vec::new(),
+                sensors: Vec::new(),
             },
             is_bound: false,
             given_look: Look::Grey,
@@ -59,6 +70,7 @@ impl Canvas {
         self.group.shapes.is_empty()
             && self.group.instances.is_empty()
             && self.about.lights.is_empty()
+            && self.about.sensors.is_empty()
     }
 
     /// An empty one for what begins where the turtle looks so.
@@ -97,6 +109,12 @@ impl Canvas {
         about.shines |= of.shines;
         let lights = of.lights.iter().map(|light| placed(light, &to_group));
         about.lights.extend(lights);
+        let sensors = of.sensors.iter().map(|sensor| Sensor {
+            organ,
+            to_world: to_group * sensor.to_world,
+            ..sensor.clone()
+        });
+        about.sensors.extend(sensors);
         self.group.instances.push(Instance {
             group,
             to_group,

@@ -1,6 +1,6 @@
-//! A [`Growth`] as a source of drawings: its graph, its bodies, and what its shaders and lamps are.
+//! A growing model ([`Sketch`]) as a source of drawings: its graph, its bodies, and what its shaders and lamps are.
 
-use super::appearance::{Appearance, Lamp, LampKind};
+use super::appearance::{Appearance, Lamp, LampKind, Purpose};
 use super::failure::Failure;
 use super::shaders;
 use super::source::{Body, Source};
@@ -10,12 +10,12 @@ use crate::eval::freeform::{Freeform, Points};
 use crate::eval::object::Data;
 use crate::eval::{Purity, Value};
 use crate::graph::{Graph, NodeId, TypeId};
-use crate::growth::Growth;
+use crate::growth::Sketch;
 use crate::library::ClassId;
 use crate::material::Material;
 use crate::rewrite::Instantiated;
 
-impl Source for Growth {
+impl Source for Sketch<'_> {
     type Object = Value;
 
     fn graph(&self) -> &Graph<Value> {
@@ -55,8 +55,8 @@ impl Source for Growth {
 }
 
 impl Appearance for Value {
-    fn surface(&self) -> Option<Material> {
-        shaders::surface(self)
+    fn surface(&self, purpose: Purpose) -> Option<Material> {
+        shaders::surface(self, purpose)
     }
 
     fn freeform(&self) -> Option<Freeform> {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Source (graph + bodies of modules) → interpret → Interpretation { scene, organs, summary, warnings }
-//!   grown       a `Growth` as a source
+//!   grown       a growing model as a source
 //!   source      what is asked of a grown model
 //!   walk        the turtle's way through the graph, without recursion
 //!   body        instantiation bodies and their prototypes
@@ -16,6 +16,7 @@
 //!   lamps       lights → sources, emission
 //!   blame       which node is at fault, and where it was made
 //!   canvas      what has been drawn so far
+//!   sensors     what measures light without being there
 //!   organs      which node a primitive belongs to
 //! ```
 //! A node inherits the frame of the source of its first successor or branch edge, so each node is drawn once even where
@@ -34,15 +35,17 @@ mod lamps;
 mod materials;
 mod meshes;
 mod organs;
+mod sensors;
 mod shaders;
 mod shapes;
 mod source;
 mod surfaces;
 mod walk;
 
-pub use appearance::{Appearance, Lamp, LampKind};
+pub use appearance::{Appearance, Lamp, LampKind, Purpose};
 pub use failure::{Failure, explain};
 pub use organs::{Organ, Organs};
+pub use sensors::Sensor;
 pub use source::{Body, Source};
 
 use crate::diag::Diagnostics;
@@ -61,6 +64,8 @@ pub struct Limits {
     pub body_nodes: u64,
     /// Layers that are not drawn.
     pub hidden: Layers,
+    /// What is drawn for.
+    pub purpose: Purpose,
 }
 
 impl Default for Limits {
@@ -71,6 +76,7 @@ impl Default for Limits {
             body_depth: 200,
             body_nodes: 1 << 30,
             hidden: Layers::default(),
+            purpose: Purpose::Picture,
         }
     }
 }
@@ -84,6 +90,8 @@ pub struct Interpretation {
     pub organs: Organs,
     /// What later stages ask first.
     pub summary: Summary,
+    /// What measures light without being there.
+    pub sensors: Vec<Sensor>,
     /// What was drawn otherwise than the model says.
     pub warnings: Diagnostics,
 }

@@ -1,5 +1,6 @@
 //! From the shaders of a model to materials: what GroIMP's classes and our own mean in terms of light.
 
+use super::appearance::Purpose;
 use crate::color::Rgb;
 use crate::eval::Value;
 use crate::eval::object::{Data, Finish, Phong, Shaders};
@@ -13,12 +14,12 @@ const DEFAULT_EXPONENT: f64 = 4.0;
 /// How many shaders may be within each other.
 const DEEPEST: u32 = 16;
 
-/// The surface that a shader describes; `None` of what is no shader.
-pub(super) fn surface(value: &Value) -> Option<Material> {
-    nested(value, DEEPEST)
+/// The surface that a shader describes for this purpose; `None` of what is no shader.
+pub(super) fn surface(value: &Value, purpose: Purpose) -> Option<Material> {
+    nested(value, purpose, DEEPEST)
 }
 
-fn nested(value: &Value, deeper: u32) -> Option<Material> {
+fn nested(value: &Value, purpose: Purpose, deeper: u32) -> Option<Material> {
     let object = value.as_object()?;
     let shaders = match &*object.lock() {
         Data::Shader(rgba) => {
@@ -33,9 +34,18 @@ fn nested(value: &Value, deeper: u32) -> Option<Material> {
     let part = |shader| {
         let known = deeper
             .checked_sub(1)
-            .and_then(|deeper| nested(shader, deeper));
+            .and_then(|deeper| nested(shader, purpose, deeper));
         known.unwrap_or_default()
     };
+    if object.class == ClassId::AlgorithmSwitchShader {
+        // Where nothing is said for light models, light meets what is seen.
+        let has_second = purpose == Purpose::LightModel && !shaders.second.is_null();
+        return Some(part(if has_second {
+            &shaders.second
+        } else {
+            &shaders.first
+        }));
+    }
     let (first, second) = (part(&shaders.first), part(&shaders.second));
     Some(match object.class {
         ClassId::MixShader => {

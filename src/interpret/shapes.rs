@@ -40,6 +40,9 @@ pub(super) struct Fields {
     pub(super) prototype: FieldId,
     /// The power density of a sky.
     pub(super) sky_power: FieldId,
+    /// Radius and exponent of a sensor; whether both of its sides sense.
+    pub(super) sensor: [FieldId; 2],
+    pub(super) sensor_two_sided: FieldId,
     /// The layer of a node.
     pub(super) layer: FieldId,
     /// Numbers of copies along x and y of a grid.
@@ -76,6 +79,8 @@ pub(super) static FIELDS: LazyLock<Fields> = LazyLock::new(|| {
         mesh_file: field("Mesh", "file"),
         prototype: field("Instance", "prototype"),
         sky_power: field("Sky", "powerDensity"),
+        sensor: ["radius", "exponent"].map(|f| field("SensorNode", f)),
+        sensor_two_sided: field("SensorNode", "twoSided"),
         layer: field("Node", "layer"),
         counts: ["xCount", "yCount"].map(|f| field("GridClonerNode", f)),
         distances: ["xDistance", "yDistance"].map(|f| field("GridClonerNode", f)),
@@ -132,6 +137,7 @@ pub(super) fn shape_of<O: Payload>(
             Primitive::Text
             | Primitive::Light
             | Primitive::Sky
+            | Primitive::Sensor
             | Primitive::Mesh
             | Primitive::Surface
             | Primitive::Sweep

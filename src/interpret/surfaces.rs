@@ -36,7 +36,7 @@ impl<S: Source> Painter<'_, S> {
             Look::Grey => (node, None),
         };
         let shader = graph.peek_object(dressed, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(Appearance::surface);
+        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose));
         let lamp = match does {
             Effect::Draw(Primitive::Parallelogram) => {
                 let light = graph.peek_object(node, FIELDS.area_light).ok().flatten();
@@ -62,7 +62,7 @@ impl<S: Source> Painter<'_, S> {
     pub(super) fn shader_material(&mut self, node: NodeId) -> Option<MaterialId> {
         let graph = self.source.graph();
         let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(Appearance::surface)?;
+        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose))?;
         let (material, problem) = self.materials.of(surface);
         if let Some(problem) = problem {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
@@ -142,7 +142,7 @@ impl<S: Source> Painter<'_, S> {
     pub(super) fn draw_sky(&mut self, node: NodeId, state: &TurtleState) -> Result<(), Failure> {
         let graph = self.source.graph();
         let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(Appearance::surface);
+        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose));
         let lamp = Lamp {
             kind: LampKind::Sky,
             color: surface.map_or([1.0; 3], |surface| surface.sides[0].reflectance.to_array()),

@@ -14,7 +14,7 @@ use super::{Interpretation, Limits, Summary};
 use crate::color::Rgb;
 use crate::diag::Diagnostics;
 use crate::graph::{EdgeBits, NodeId, TypeId};
-use crate::light::{Environment, Light, Sky};
+use crate::light::{Environment, Sky};
 use crate::scene::description::{Group, GroupId, Instance, OrganId, PlacedShape, SceneDescription};
 use crate::turtle::effect::{Effect, Primitive};
 use crate::turtle::pose::{apply_own_transform, follow};
@@ -110,7 +110,7 @@ impl<'s, S: Source> Painter<'s, S> {
 
     pub(super) fn finish(mut self) -> Interpretation {
         let canvas = std::mem::take(&mut self.canvas);
-        let lights = canvas.about.lights.clone();
+        let (lights, sensors) = (canvas.about.lights.clone(), canvas.about.sensors.clone());
         let summary = Summary {
             has_light: canvas.about.shines || !lights.is_empty() || !self.sky.is_black(),
             has_plane: canvas.about.has_plane,
@@ -135,6 +135,7 @@ impl<'s, S: Source> Painter<'s, S> {
             },
             organs: self.organs,
             summary,
+            sensors,
             warnings: self.warnings,
         }
     }
@@ -274,6 +275,7 @@ impl<'s, S: Source> Painter<'s, S> {
         match does {
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state),
             Effect::Draw(Primitive::Sky) => self.draw_sky(node, state),
+            Effect::Draw(Primitive::Sensor) => self.draw_sensor(node, state, place),
             Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place),
             Effect::Draw(
                 primitive @ (Primitive::Surface | Primitive::Sweep | Primitive::Polygons),
@@ -366,12 +368,9 @@ impl<'s, S: Source> Painter<'s, S> {
             return Ok(());
         }
         let organ = self.organ(node, place);
-        // Shapes of an instance cost nothing, but its lamps are placed one by one.
-        let n_lamps = self
-            .about
-            .get(group.0 as usize)
-            .map_or(0, |about| about.lights.len());
-        let bytes = size_of::<Instance>() + n_lamps * size_of::<Light>();
+        // Shapes of an instance cost nothing, but its lamps and sensors are placed one by one.
+        let own = self.about.get(group.0 as usize).map_or(0, About::own_bytes);
+        let bytes = size_of::<Instance>() + own;
         self.charge(bytes, node, place)?;
         if let Some(about) = self.about.get(group.0 as usize) {
             self.canvas.push_instance(group, about, to_group, organ);

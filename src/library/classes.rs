@@ -37,7 +37,8 @@ classes! {
     Tuple3d, "Three doubles x, y, z.";
     Point3d: Tuple3d, "A point.";
     Vector3d: Tuple3d, "A vector.";
-    Spectrum3d: Vector3d, "Power or colour in red, green and blue, as x, y, z.";
+    Spectrum: Vector3d, "Power or colour in red, green and blue, as x, y, z.";
+    Spectrum3d: Spectrum, "Power or colour in red, green and blue, as x, y, z.";
     Matrix, "A square matrix of doubles; element `m01` stands in row 0, column 1.";
     Matrix3d: Matrix, "3 × 3 doubles.";
     Matrix4d: Matrix, "4 × 4 doubles: turns, scales and moves points.";
@@ -75,7 +76,7 @@ classes! {
     SpotLight: PointLight, "Shines from a point into a cone along local z.";
     DirectionalLight: Light, "Parallel light along local z over all that lies downstream.";
     AreaLight: Light, "Makes the `Parallelogram` that carries it shine.";
-    LightModel, "Traces light through the scene and tells what each node absorbs.";
+    LightModel, "Traces the light of the lamps through the model as it stands and tells what each node gets of it.";
     Random, "A generator of its own (`java.util.Random`).";
     Number, "A boxed number.";
     Byte: Number, "A boxed byte.";
@@ -125,7 +126,7 @@ classes! {
     ShaderRef: Shader, "A shader of a GroIMP project, by name; gray.";
     AlgorithmSwitchShader: Shader, "One shader for pictures, another for light models.";
     SideSwitchShader: Shader, "One shader for each side of a surface.";
-    FluxLightModel: LightModel, "A light model.";
+    FluxLightModel: LightModel, "A light model; the same one, with the names of GroIMP's other one.";
     StringBuffer, "Text that can be changed.";
     StringBuilder: StringBuffer, "Text that can be changed.";
     Function, "A function as a value.";
@@ -191,7 +192,7 @@ mod tests {
     #[test]
     fn lineage_ends_at_the_top() {
         let names: Vec<_> = ClassId::Spectrum3d.lineage().map(ClassId::name).collect();
-        assert_eq!(names, ["Spectrum3d", "Vector3d", "Tuple3d"]);
+        assert_eq!(names, ["Spectrum3d", "Spectrum", "Vector3d", "Tuple3d"]);
         assert!(ClassId::ArithmeticException.is_a(ClassId::Throwable));
         assert!(!ClassId::Point3d.is_a(ClassId::Vector3d));
         assert_eq!(ClassId::named("HashMap"), Some(ClassId::HashMap));

@@ -87,7 +87,11 @@ signatures! {
     SideShader = "SideSwitchShader"."new"(SHADER front, SHADER back) -> Void, Pure, "", "For the front and the back.";
     RgbColorZero = "RGBColor"."new"() -> Void, Pure, "", "Black.";
     ShaderOfColor = "RGBAShader"."new"(Class(ClassId::RGBColor) color) -> Void, Pure, "", "Of one colour, opaque.";
-    LightModelLeast = "LightModel"."new"(Int rays, Int depth, Double least) -> Void, Pure, "", "From numbers of rays and of reflections, and the power below which rays end.";
+    LightModelLeast = "LightModel"."new"(Int rays, Int depth, Double minPower) -> Void, Pure, "", "From numbers of rays and of reflections; `minPower` has no effect.";
+    Flux = "FluxLightModel"."new"() -> Void, Pure, "", "Default numbers of rays and reflections.";
+    FluxOf = "FluxLightModel"."new"(Int rays, Int depth) -> Void, Pure, "", "From numbers of rays and of reflections.";
+    FluxLeast = "FluxLightModel"."new"(Int rays, Int depth, Double minPower) -> Void, Pure, "", "From numbers of rays and of reflections; `minPower` has no effect.";
+    FluxOfSensors = "FluxLightModel"."new"(Int rays, Int depth, Double minPower, Boolean sensors) -> Void, Pure, "", "And whether `SensorNode`s are looked at.";
     Buffer = "StringBuffer"."new"() -> Void, Pure, "", "Empty.";
     BufferText = "StringBuffer"."new"(String text) -> Void, Pure, "", "With this text.";
     BufferCapacity = "StringBuffer"."new"(Int n) -> Void, Pure, "", "Empty, with room.";
@@ -149,7 +153,7 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
         ClassId::Polygons,
         ClassId::View3D,
         ClassId::Tuple3d,
-        ClassId::Spectrum3d,
+        ClassId::Spectrum,
     ]
     .contains(&class)
     {

@@ -111,7 +111,7 @@ signatures! {
     VectorTimes = "Vector3d"."*"(Double value) -> VECTOR, Pure, "", "Multiple.";
     VectorTimesVector = "Vector3d"."*"(VECTOR other) -> Double, Pure, "", "Scalar product.";
     VectorOver = "Vector3d"."/"(Double value) -> VECTOR, Pure, "", "Fraction.";
-    SpectrumIntegrate = "Spectrum3d"."integrate"() -> Double, Pure, "W", "Sum over red, green and blue.";
+    SpectrumIntegrate = "Spectrum"."integrate"() -> Double, Pure, "W", "Sum over red, green and blue.";
 
     Matrix00 = "Matrix"."m00"() -> Double, Pure, "", "Element in row 0, column 0.";
     MatrixSet00 = "Matrix"."m00="(Double value) -> Void, Writes, "", "Sets the element in row 0, column 0.";
@@ -204,11 +204,34 @@ signatures! {
     AreaLightSetPower = "AreaLight"."setPower"(Float power) -> Void, Writes, "W", "Power, the sum over red, green and blue.";
     AreaLightSetExponent = "AreaLight"."setExponent"(Float exponent) -> Void, Writes, "", "Exponent of the cosine by which it shines.";
     LightModelSetSeed = "LightModel"."setSeed"(Long seed) -> Void, Writes, "", "Seed of its rays.";
-    LightModelSetRayCount = "LightModel"."setRayCount"(Int rays) -> Void, Writes, "", "Number of rays.";
-    LightModelSetDepth = "LightModel"."setDepth"(Int depth) -> Void, Writes, "", "Number of reflections.";
-    LightModelCompute = "LightModel"."compute"() -> Void, Writes, "", "Traces the light.";
-    LightModelAbsorbedPower = "LightModel"."getAbsorbedPower"(Node node) -> SPECTRUM, Graph, "W", "Power that the node absorbs.";
-    LightModelAbsorbedPower3d = "LightModel"."getAbsorbedPower3d"(Node node) -> SPECTRUM, Graph, "W", "Power that the node absorbs.";
+    LightModelSetRayCount = "LightModel"."setRayCount"(Int rays) -> Void, Writes, "", "Number of rays, at least 1.";
+    LightModelSetDepth = "LightModel"."setDepth"(Int depth) -> Void, Writes, "", "Greatest number of reflections, at least 1.";
+    LightModelCompute = "LightModel"."compute"() -> Void, Writes, "", "Traces the light of the lamps in the graph as it is now.";
+    LightModelAbsorbedPower = "LightModel"."getAbsorbedPower"(Node node) -> SPECTRUM, Graph, "W", "Power that the node absorbs, with all that its body draws; 0 for what was not there at `compute()`.";
+    LightModelAbsorbedPower3d = "LightModel"."getAbsorbedPower3d"(Node node) -> SPECTRUM, Graph, "W", "As `getAbsorbedPower`.";
+    LightModelRadiantPower = "LightModel"."getRadiantPowerFor"(Node node) -> SPECTRUM, Graph, "W", "As `getAbsorbedPower`.";
+    LightModelRadiantPower3d = "LightModel"."getRadiantPower3dFor"(Node node) -> SPECTRUM, Graph, "W", "As `getAbsorbedPower`.";
+    LightModelReflectedPower = "LightModel"."getReflectedPower"(Node node) -> SPECTRUM, Graph, "W", "Power that the node reflects.";
+    LightModelTransmittedPower = "LightModel"."getTransmittedPower"(Node node) -> SPECTRUM, Graph, "W", "Power that the node lets through.";
+    LightModelReceivedPower = "LightModel"."getReceivedPower"(Node node) -> SPECTRUM, Graph, "W", "Power that meets the node: absorbed, reflected and transmitted.";
+    LightModelHitCount = "LightModel"."getHitCount"(Node node) -> Int, Graph, "", "Number of rays that met the node.";
+    LightModelSeed = "LightModel"."getSeed"() -> Long, Pure, "", "Seed of its rays.";
+    LightModelMinPower = "LightModel"."getMinPower"() -> Double, Pure, "W", "What `setMinPower` was given.";
+    LightModelInvalidate = "LightModel"."invalidateOctree"() -> Void, Pure, "", "Nothing: `compute()` always computes.";
+    FluxSetRandomSeed = "FluxLightModel"."setRandomSeed"(Int seed) -> Void, Writes, "", "Seed of its rays.";
+    FluxSetRandomseed = "FluxLightModel"."setRandomseed"(Int seed) -> Void, Writes, "", "Seed of its rays.";
+    FluxRandomSeed = "FluxLightModel"."getRandomSeed"() -> Int, Pure, "", "Seed of its rays.";
+    FluxSetSensors = "FluxLightModel"."setEnableSensors"(Boolean on) -> Void, Writes, "", "Whether `SensorNode`s are looked at; they are unless set.";
+    FluxHasSensors = "FluxLightModel"."isSensorsEnabled"() -> Boolean, Pure, "", "Whether `SensorNode`s are looked at.";
+    FluxSetCutoffPower = "FluxLightModel"."setCutoffPower"(Double power) -> Void, Writes, "W", "As `setMinPower`.";
+    FluxCutoffPower = "FluxLightModel"."getCutoffPower"() -> Double, Pure, "W", "What `setCutoffPower` was given.";
+    FluxSetMeasureMode = "FluxLightModel"."setMeasureMode"(Int mode) -> Void, Writes, "", "What is measured: only `MeasureMode.RGB` is possible.";
+    FluxSetBuckets = "FluxLightModel"."setSpectralBuckets"(Int n) -> Void, Pure, "", "Nothing: three bands are measured.";
+    FluxSetDomain = "FluxLightModel"."setSpectralDomain"(Int from, Int to) -> Void, Pure, "nm", "Nothing: three bands are measured.";
+    FluxSetDispersion = "FluxLightModel"."setDispersion"(Boolean on) -> Void, Pure, "", "Nothing: glass bends all three bands alike.";
+    FluxSetFlatness = "FluxLightModel"."setFlatness"(Float flatness) -> Void, Pure, "m", "Nothing: round shapes are traced as they are.";
+    FluxBuild = "FluxLightModel"."build"() -> Void, Pure, "", "Nothing: `compute()` builds the scene.";
+    FluxComputeBuilding = "FluxLightModel"."compute"(Boolean isForced, Boolean isBuilt) -> Void, Writes, "", "As `compute()`.";
 
     RandomSetSeed = "Random"."setSeed"(Long seed) -> Void, Writes, "", "Starts it anew.";
     RandomNextInt = "Random"."nextInt"() -> Int, Writes, "", "Any int.";
@@ -357,12 +380,12 @@ signatures! {
     AreaLightSetVisible = "AreaLight"."setVisible"(Boolean on) -> Void, Writes, "", "Whether windows show it; nothing here.";
     LightModelSetLayerVisible = "LightModel"."setLayerVisible"(Int layer, Boolean visible) -> Void, Writes, "", "Whether nodes of a layer take part in its light.";
     LightModelSetThreadCount = "LightModel"."setThreadCount"(Int n) -> Void, Writes, "", "Nothing: the number of threads is an option of the run.";
-    LightModelSetMinPower = "LightModel"."setMinPower"(Double power) -> Void, Writes, "W", "Power below which rays end.";
+    LightModelSetMinPower = "LightModel"."setMinPower"(Double power) -> Void, Writes, "W", "Nothing: dim rays end by chance, so that no power is lost.";
     LightModelRayCount = "LightModel"."getRayCount"() -> Int, Pure, "", "Number of rays.";
-    LightModelDepth = "LightModel"."getDepth"() -> Int, Pure, "", "Number of reflections.";
-    LightModelComputeForced = "LightModel"."compute"(Boolean isForced) -> Void, Writes, "", "Traces the light.";
-    LightModelSensed = "LightModel"."getSensedIrradiance"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
-    LightModelSensed3d = "LightModel"."getSensedIrradiance3d"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a sensor receives.";
+    LightModelDepth = "LightModel"."getDepth"() -> Int, Pure, "", "Greatest number of reflections.";
+    LightModelComputeForced = "LightModel"."compute"(Boolean isForced) -> Void, Writes, "", "As `compute()`.";
+    LightModelSensed = "LightModel"."getSensedIrradiance"(Node node) -> SPECTRUM, Graph, "W/m²", "Power per area that a `SensorNode` receives.";
+    LightModelSensed3d = "LightModel"."getSensedIrradiance3d"(Node node) -> SPECTRUM, Graph, "W/m²", "As `getSensedIrradiance`.";
 
     MapPut = "Map"."put"(E key, V value) -> V, Writes, "", "Stores under a key, gives the old value.";
     MapGet = "Map"."get"(Object key) -> V, Pure, "", "Value of a key, null if none.";

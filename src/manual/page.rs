@@ -224,7 +224,7 @@ fn geometry(page: &mut String) {
     page.push_str(
         "Every property can be set after the constructor: `Box(1, 0.2, 0.3).(setShader(GREEN), setLayer(2))`, and read as `x[length]`.\n\n",
     );
-    let is_solid = |e| matches!(e, Effect::Draw(primitive) if !matches!(primitive, Primitive::Light | Primitive::Sky));
+    let is_solid = |e| matches!(e, Effect::Draw(primitive) if !matches!(primitive, Primitive::Light | Primitive::Sky | Primitive::Sensor));
     types(page, of_effect(is_solid));
     heading(page, "### Nodes that draw nothing, and what others extend");
     types(
@@ -237,11 +237,11 @@ fn shaders_and_lights(page: &mut String) {
     heading(page, "## Light");
     types(
         page,
-        ["LightNode", "Sky"].into_iter().filter_map(builtin_named),
+        ["LightNode", "Sky", "SensorNode"].into_iter().filter_map(builtin_named),
     );
     page.push('\n');
     members_of(page, |class| {
-        class.is_a(ClassId::Light) || class == ClassId::LightModel
+        class.is_a(ClassId::Light) || class.is_a(ClassId::LightModel)
     });
     heading(page, "## Shaders");
     members_of(page, is_appearance);
@@ -332,7 +332,7 @@ fn constants_of(page: &mut String, owner: &str) {
 
 fn classes(page: &mut String) {
     heading(page, "## Classes");
-    let is_light = |class: ClassId| class.is_a(ClassId::Light) || class == ClassId::LightModel;
+    let is_light = |class: ClassId| class.is_a(ClassId::Light) || class.is_a(ClassId::LightModel);
     members_of(page, |class| !is_light(class) && !is_appearance(class));
     for owner in ["String", "Object", "Array", "Node"] {
         let rows = own_calls(owner);

@@ -211,7 +211,7 @@ pub fn draw(
         hidden: run.options.hide_layers.value,
         ..interpret::Limits::default()
     };
-    match growth.drawing(|growth| interpret::interpret(growth, limits)) {
+    match growth.drawing(|sketch| interpret::interpret(sketch, limits)) {
         Ok(drawn) => {
             let organs = Arc::new(drawn.organs);
             let (scene, summary) = (drawn.scene, drawn.summary);

@@ -100,6 +100,7 @@ pub enum Primitive {
     Text,
     Light,
     Sky,
+    Sensor,
     Mesh,
     Surface,
     Sweep,
@@ -116,6 +117,7 @@ impl Primitive {
             | Self::Text
             | Self::Light
             | Self::Sky
+            | Self::Sensor
             | Self::Mesh
             | Self::Surface
             | Self::Sweep

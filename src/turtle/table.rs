@@ -1031,32 +1031,32 @@ const SOLIDS: [BuiltinType; 17] = [
     ty(
         "SensorNode",
         "ShadedNull",
-        Effect::Group,
+        Effect::Draw(Primitive::Sensor),
         &[
             field(
                 "radius",
                 FieldType::Float,
                 0.1,
                 "m",
-                "Radius of the disc that senses.",
+                "Radius of the disc that senses, in the plane of local x and y.",
             ),
             field(
                 "twoSided",
                 FieldType::Boolean,
                 0.0,
                 "",
-                "Whether both sides sense.",
+                "Whether both sides sense, not only the one that looks along the head.",
             ),
             field(
                 "exponent",
                 FieldType::Float,
                 1.0,
                 "",
-                "Exponent of the cosine by which it senses.",
+                "Exponent of the cosine by which it senses; with 1 it reads the irradiance on its plane.",
             ),
         ],
         &[&[], &["radius"]],
-        "A sensor of light at the turtle's place; not drawn.",
+        "Measures the light that passes it (`getSensedIrradiance` of a `LightModel`), in the bands of its colour; not drawn.",
     ),
     ty(
         "GridClonerNode",

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, lists, matrices,
+    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, light_models, lists, matrices,
     moments, more, new_object, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
@@ -37,7 +37,8 @@ pub fn constructor(id: C) -> Maker {
         C::Mix => surfaces::make_mix,
         C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,
         C::DirectionalLight => light::make_directional,
-        C::LightModel | C::LightModelOf => light::make_model,
+        C::LightModel | C::LightModelOf | C::LightModelLeast => light_models::make,
+        C::Flux | C::FluxOf | C::FluxLeast | C::FluxOfSensors => light_models::make,
         C::Random => random::make,
         C::RandomSeed => random::make_seeded,
         C::Integer | C::Long | C::Double | C::Boolean | C::Character => boxed,
@@ -54,12 +55,12 @@ pub fn constructor(id: C) -> Maker {
         C::ReaderPath | C::ReaderFile | C::ScannerPath => files::make_reader,
         C::ReaderOf | C::ScannerOf | C::WriterOf | C::WriterOfFlushed => files::make_same,
         C::WriterPath | C::WriterFile | C::WriterAppend | C::WriterFileAppend => files::make_writer,
-        C::SwitchShader2 | C::SideShaderFront => first_of,
-        C::SwitchShader3 => second_or_first_of,
+        C::SwitchShader2 => surfaces::make_switch,
+        C::SwitchShader3 => surfaces::make_switch_of_three,
+        C::SideShaderFront => first_of,
         C::SideShader => surfaces::make_sides,
         C::RgbColorZero => shaders::make_color,
         C::ShaderOfColor => shaders::make_of_color,
-        C::LightModelLeast => light::make_model,
         C::Buffer | C::BufferText | C::BufferCapacity => buffers::make,
         C::Date | C::DateOf => moments::make_date,
         C::SimpleDateFormat | C::DecimalFormat => moments::make_pattern,
@@ -88,16 +89,9 @@ pub fn constructor(id: C) -> Maker {
     }
 }
 
-/// A shader that stands for several: the one that pictures show.
+/// One shader for both sides.
 fn first_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
     Ok(args.at(0).clone())
-}
-
-/// As GroIMP does: without a shader for pictures, that of the window.
-fn second_or_first_of(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {
-    let second = args.at(1);
-    let is_null = matches!(second, Value::Null);
-    Ok(if is_null { args.at(0) } else { second }.clone())
 }
 
 fn boxed(_: &mut Context<'_>, _: ClassId, args: &[Value]) -> Result<Value, Trap> {

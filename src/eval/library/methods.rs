@@ -3,7 +3,7 @@
 use super::Behaviour::{self, Native};
 use super::{
     Arguments, Context, arrays, buffers, collections, data, deques, files, freeform, getter, keyed,
-    light, lists, matrices, moments, more, numbers, ordering, random, setter, shaders, strings,
+    light, light_models, lists, matrices, moments, more, numbers, ordering, random, setter, shaders, strings,
     surfaces, system, values, vectors,
 };
 use crate::eval::object::Data;
@@ -167,12 +167,29 @@ pub fn method(id: M) -> Behaviour {
         M::SpotLightSetInnerAngle => light::set_inner_angle,
         M::SpotLightSetOuterAngle => light::set_outer_angle,
         M::AreaLightSetExponent => light::set_exponent,
-        M::LightModelSetSeed => light::set_seed,
-        M::LightModelSetRayCount => light::set_ray_count,
-        M::LightModelSetDepth => light::set_depth,
-        M::LightModelCompute | M::LightModelAbsorbedPower | M::LightModelAbsorbedPower3d => {
-            light::unsupported
+        M::LightModelSetSeed | M::FluxSetRandomSeed | M::FluxSetRandomseed => {
+            light_models::set_seed
         }
+        M::LightModelSetRayCount => light_models::set_ray_count,
+        M::LightModelSetDepth => light_models::set_depth,
+        M::LightModelCompute | M::LightModelComputeForced | M::FluxComputeBuilding => {
+            light_models::compute
+        }
+        M::LightModelAbsorbedPower
+        | M::LightModelAbsorbedPower3d
+        | M::LightModelRadiantPower
+        | M::LightModelRadiantPower3d => light_models::absorbed,
+        M::LightModelReflectedPower => light_models::reflected,
+        M::LightModelTransmittedPower => light_models::transmitted,
+        M::LightModelReceivedPower => light_models::received,
+        M::LightModelHitCount => light_models::hits,
+        M::LightModelSensed | M::LightModelSensed3d => light_models::sensed,
+        M::LightModelSeed => light_models::seed,
+        M::LightModelMinPower | M::FluxCutoffPower => light_models::min_power,
+        M::FluxRandomSeed => light_models::random_seed,
+        M::FluxSetSensors => light_models::set_sensors,
+        M::FluxHasSensors => light_models::has_sensors,
+        M::FluxSetMeasureMode => light_models::set_measure_mode,
         M::RandomSetSeed => random::own_set_seed,
         M::RandomNextInt => random::own_int,
         M::RandomNextIntBelow => random::own_int_below,
@@ -300,19 +317,22 @@ pub fn method(id: M) -> Behaviour {
         | M::PointLightSetExponent
         | M::PointLightSetDistance
         | M::AreaLightSetVisible
-        | M::LightModelSetThreadCount => system::nothing,
+        | M::LightModelSetThreadCount
+        | M::LightModelInvalidate
+        | M::FluxBuild
+        | M::FluxSetBuckets
+        | M::FluxSetDomain
+        | M::FluxSetDispersion
+        | M::FluxSetFlatness => system::nothing,
         M::PointLightPower | M::DirectionalLightPowerDensity | M::AreaLightPower => light::power,
         M::SpotLightInnerAngle => light::inner_angle,
         M::SpotLightOuterAngle => light::outer_angle,
-        M::LightModelSetLayerVisible => light::set_layer_visible,
-        M::LightModelSetMinPower => light::set_min_power,
-        M::LightModelRayCount => light::ray_count,
-        M::LightModelDepth => light::depth,
+        M::LightModelSetLayerVisible => light_models::set_layer_visible,
+        M::LightModelSetMinPower | M::FluxSetCutoffPower => light_models::set_min_power,
+        M::LightModelRayCount => light_models::ray_count,
+        M::LightModelDepth => light_models::depth,
         M::ColorSet | M::ColorSetParts => shaders::set_rgb,
         M::LightGetColor => shaders::light_color,
-        M::LightModelComputeForced | M::LightModelSensed | M::LightModelSensed3d => {
-            light::unsupported
-        }
         M::MapContainsValue => keyed::contains_value,
         M::MapGetOrDefault => keyed::get_or_default,
         M::MapPut => keyed::put,

@@ -19,6 +19,7 @@ mod format;
 mod freeform;
 mod functions;
 mod light;
+mod light_models;
 pub mod moments;
 pub mod matrices;
 mod lists;

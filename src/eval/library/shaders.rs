@@ -168,6 +168,13 @@ pub(super) fn set_alpha(data: &mut Data, value: &Value) {
 
 /// Colour as `0xAARRGGBB`.
 pub(super) fn average_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
+    let shader = match &*cx.object(args, 0)?.lock() {
+        Data::Shaders(pair) => Some(pair.first.clone()),
+        _ => None,
+    };
+    if let Some(shader) = shader.filter(|shader| !shader.is_null()) {
+        return average_color(cx, &[shader]);
+    }
     let rgba = match &*cx.object(args, 0)?.lock() {
         Data::Shader(c) => c.map(f64::from),
         Data::Phong(p) => {

@@ -130,6 +130,28 @@ pub(super) fn make_sides(
     }
 }
 
+/// `AlgorithmSwitchShader(view, light)`
+pub(super) fn make_switch(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    pair(class, args, 0.0)
+}
+
+/// `AlgorithmSwitchShader(window, view, light)`; as in GroIMP pictures without a shader show that of the window.
+pub(super) fn make_switch_of_three(
+    _: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let view = match args.at(1) {
+        Value::Null => args.at(0),
+        view => view,
+    };
+    pair(class, &[view.clone(), args.at(2).clone()], 0.0)
+}
+
 fn pair(class: ClassId, args: &[Value], share: f64) -> Result<Value, Trap> {
     let (first, second) = (args.at(0).clone(), args.at(1).clone());
     let shaders = Shaders {
