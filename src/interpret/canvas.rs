@@ -110,7 +110,7 @@ impl Canvas {
         let lights = of.lights.iter().map(|light| placed(light, &to_group));
         about.lights.extend(lights);
         let sensors = of.sensors.iter().map(|sensor| Sensor {
-            organ,
+            organ: if organ.is_own() { organ } else { sensor.organ },
             to_world: to_group * sensor.to_world,
             ..sensor.clone()
         });

@@ -10,6 +10,7 @@ use super::source::Body;
 use super::source::Source;
 use super::walk::{Painter, Place};
 use crate::graph::NodeId;
+use crate::scene::description::OrganId;
 use crate::turtle::TurtleState;
 use glam::{DAffine3, DVec3};
 
@@ -26,6 +27,7 @@ impl<S: Source> Painter<'_, S> {
         self.instances.nesting += 1;
         let fresh = Canvas::beginning_with(self.canvas.given_look);
         let outer = std::mem::replace(&mut self.canvas, fresh);
+        let first = self.organs.len();
         let drawn = body
             .map_or(Ok(()), |body| self.draw_body(node, body, state, place))
             .and_then(|()| self.draw_below(node, *state, place));
@@ -38,6 +40,10 @@ impl<S: Source> Painter<'_, S> {
             return Ok(());
         }
         let group = self.add_group(canvas);
+        let placing = Place {
+            owner: place.owner.or(Some(OrganId::COPY)),
+            ..place
+        };
         let graph = self.source.graph();
         let [n_x, n_y] = FIELDS
             .counts
@@ -45,14 +51,16 @@ impl<S: Source> Painter<'_, S> {
         let [d_x, d_y] = FIELDS
             .distances
             .map(|f| graph.get_f64(node, f).unwrap_or(0.0));
-        if n_y == 0 {
+        let copies = u64::from(n_x.unsigned_abs()) * u64::from(n_y.unsigned_abs());
+        self.organs.copy(first, copies.max(1));
+        if copies == 0 {
             return Ok(());
         }
         for x in 0..n_x {
             for y in 0..n_y {
                 let shift = DVec3::new(f64::from(x) * d_x, f64::from(y) * d_y, 0.0);
                 let moved = DAffine3::from_translation(state.transform.transform_vector3(shift));
-                self.push_instance(group, moved, node, place)?;
+                self.push_instance(group, moved, node, placing)?;
             }
             if self.source.is_stopped() {
                 return Err(super::failure::stopped());

@@ -12,6 +12,8 @@ pub struct Organ {
     pub node: NodeId,
     /// Its type.
     pub type_id: TypeId,
+    /// How often it stands in the scene: more than once in the grid of a `GridClonerNode`.
+    pub copies: u64,
 }
 
 /// All nodes that were drawn, by organ number, in the order they were drawn. What a body draws belongs to the node that
@@ -73,10 +75,26 @@ impl Organs {
         &self.list
     }
 
+    /// Number of organs so far.
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Notes that the organs from number `first` on stand in a grid of so many copies.
+    pub(super) fn copy(&mut self, first: usize, copies: u64) {
+        for organ in self.list.iter_mut().skip(first) {
+            organ.copies = organ.copies.saturating_mul(copies);
+        }
+    }
+
     /// The number of a node: that of the last organ, or a new one.
     pub(super) fn number(&mut self, node: NodeId, type_id: TypeId) -> OrganId {
         if self.list.last().is_none_or(|last| last.node != node) {
-            self.list.push(Organ { node, type_id });
+            self.list.push(Organ {
+                node,
+                type_id,
+                copies: 1,
+            });
         }
         // Beyond four thousand million organs all share the last number; memory ends long before.
         OrganId(u32::try_from(self.list.len() - 1).unwrap_or(u32::MAX))

@@ -464,7 +464,7 @@ pub(super) fn world_planes(groups: &[PlannedGroup]) -> Result<Vec<WorldPlane>, S
                         first: 0,
                         material: planned.material,
                         organ: planned.organ,
-                        instance_organ: outer.or(planned.instance_organ),
+                        instance_organ: outer.filter(OrganId::is_own).or(planned.instance_organ),
                         mesh: None,
                         is_mirrored: false,
                     },
@@ -479,7 +479,7 @@ pub(super) fn world_planes(groups: &[PlannedGroup]) -> Result<Vec<WorldPlane>, S
             .iter()
             .filter(|instance| has_planes[instance.group])
         {
-            let organ = outer.unwrap_or(instance.organ);
+            let organ = outer.filter(OrganId::is_own).unwrap_or(instance.organ);
             open.push((instance.group, to_world * instance.to_group, Some(organ)));
         }
     }

@@ -17,6 +17,17 @@ pub struct GroupId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct OrganId(pub u32);
 
+impl OrganId {
+    /// The organ of an instance that is a mere copy: what is in it belongs to the organs in it.
+    pub const COPY: Self = Self(u32::MAX - 1);
+
+    /// Whether this is an organ, not [`OrganId::COPY`].
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        *self != Self::COPY
+    }
+}
+
 /// A shape somewhere in a group.
 #[derive(Clone, Debug)]
 pub struct PlacedShape {
@@ -37,7 +48,7 @@ pub struct Instance {
     pub group: GroupId,
     /// From that group's frame to this one's; any invertible affine map.
     pub to_group: DAffine3,
-    /// Its organ (the module that made the instance).
+    /// Its organ (the module that made the instance), or [`OrganId::COPY`].
     pub organ: OrganId,
 }
 

@@ -221,7 +221,7 @@ fn gather<'a>(
         for instance in &groups[group].instances {
             check_placement(&instance.to_group, instance.organ)?;
             let child = instance.group.0 as usize;
-            let organ = outer.unwrap_or(instance.organ);
+            let organ = outer.filter(OrganId::is_own).unwrap_or(instance.organ);
             let to_group = to_group * instance.to_group;
             if dissolves[child] {
                 open.push((child, to_group, Some(organ)));

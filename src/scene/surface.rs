@@ -28,7 +28,7 @@ pub struct SurfacePoint {
     pub material: MaterialId,
     /// The organ.
     pub organ: OrganId,
-    /// The organ that made the outermost instance around the point, if there is one.
+    /// The organ that made the outermost instance around the point, mere copies left out, if there is one.
     pub instance_organ: Option<OrganId>,
     /// Whether the ray came from the front.
     pub is_front: bool,
@@ -39,6 +39,12 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
+    /// The organ that the point belongs to as a whole: who made the outermost instance around it, else its own.
+    #[must_use]
+    pub fn owner(&self) -> OrganId {
+        self.instance_organ.unwrap_or(self.organ)
+    }
+
     /// A ray that leaves the surface in a unit direction, to the side that the direction points to.
     ///
     /// It starts off the surface by a multiple of the carried error and cannot meet the primitive again if that is flat.
@@ -145,9 +151,11 @@ impl Located<'_> {
         std::iter::once(*to_root).chain(inner)
     }
 
-    /// The organ of the outermost instance.
+    /// The organ of the outermost instance that has one.
     pub(super) fn instance_organ(&self) -> Option<OrganId> {
-        let outermost = self.path[0].map(|(_, instance)| instance.organ);
+        let path = self.path[..self.depth].iter().flatten();
+        let mut organs = path.map(|(_, instance)| instance.organ);
+        let outermost = organs.find(OrganId::is_own);
         outermost.or(self.group.shape_of(self.number).instance_organ)
     }
 }
@@ -242,7 +250,7 @@ fn finish(
         uv: local.uv,
         material: shape.material,
         organ: shape.organ,
-        instance_organ,
+        instance_organ: instance_organ.filter(OrganId::is_own),
         is_front: ray.direction.dot(local.normal_g) < 0.0,
         primitive: hit.primitive,
         is_flat: local.is_flat,
