@@ -6,25 +6,18 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use understory::check::{SourceModel, check};
-use understory::diag::{Diagnostic, Severity, SourceMap};
+use understory::diag::{Diagnostic, Diagnostics, Severity, SourceMap};
 use understory::growth::{Growth, GrowthOptions};
+use understory::integrator::CancelToken;
+use understory::pipeline::audience::Audience;
+use understory::pipeline::light_models::SceneLight;
 use understory::syntax::parse;
 
-/// Models that cannot pass, each with the reason.
-const NOT_PASSING: &[(&str, &str)] = &[
-    (
-        "50-light-directional",
-        "light models are not computed during growth",
-    ),
-    (
-        "52-light-area",
-        "light models are not computed during growth",
-    ),
-    (
-        "54-light-position",
-        "light models are not computed during growth",
-    ),
-];
+/// Models whose numbers GroIMP found by chance: they are compared up to that.
+const BY_CHANCE: &[&str] = &["50-light-directional", "52-light-area", "54-light-position"];
+
+/// How far GroIMP's own numbers are from the truth where that is known: 1.051 of 1 in model 54.
+const CHANCE: f64 = 0.055;
 
 /// Models that GroIMP refuses and that may run here: generics, enums and string switches harm no model.
 const LENIENT: &[&str] = &[
@@ -36,6 +29,29 @@ const LENIENT: &[&str] = &[
 
 fn golden_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+}
+
+/// Who hears nothing.
+struct Nobody;
+
+impl Audience for Nobody {
+    fn printed(&self, _: &str) {}
+    fn warned(&self, _: &SourceMap, _: &Diagnostics) {}
+    fn begins(&self, _: &'static str) {}
+    fn progress(&self, _: u64, _: u64) {}
+    fn ends(&self) {}
+}
+
+/// Whether two texts are the same but for numbers that chance has made a little different.
+fn is_same_up_to_chance(found: &str, expected: &str) -> bool {
+    let words = |text: &str| -> Vec<String> { text.split(' ').map(str::to_owned).collect() };
+    let (found, expected) = (words(found), words(expected));
+    let is_close = |(a, b): (&String, &String)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        // What is dark is dark; printed numbers are rounded to 0.001.
+        (Ok(a), Ok(b)) => (a - b).abs() <= CHANCE * b.abs() + if b == 0.0 { 0.0 } else { 0.001 },
+        _ => a == b,
+    };
+    found.len() == expected.len() && found.iter().zip(&expected).all(is_close)
 }
 
 /// What a model did.
@@ -74,6 +90,12 @@ fn run(text: &str) -> Run {
     let output = Box::new(move |text: &str| sink.lock().unwrap().push_str(text));
     let mut growth =
         Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false)).unwrap();
+    growth.set_light_solver(Box::new(SceneLight {
+        memory: 1 << 30,
+        body_nodes: 1 << 20,
+        cancel: CancelToken::default(),
+        audience: Arc::new(Nobody),
+    }));
     let thrown = growth.init().err().map(|fault| *fault);
     let printed = printed.lock().unwrap().clone();
     Run {
@@ -109,6 +131,16 @@ fn difference(name: &str, text: &str, expected: &str) -> Option<String> {
     };
     if LENIENT.contains(&name) {
         return run.thrown.map(|d| d.message);
+    }
+    if BY_CHANCE.contains(&name) {
+        let pairs = run.printed.lines().zip(expected.lines());
+        let wrong: Vec<String> = pairs
+            .filter(|(found, wanted)| !is_same_up_to_chance(found, wanted))
+            .map(|(found, wanted)| format!("  - {wanted}\n  + {found}"))
+            .collect();
+        let n = (run.printed.lines().count(), expected.lines().count());
+        let is_same = wrong.is_empty() && n.0 == n.1 && run.thrown.is_none();
+        return (!is_same).then(|| format!("{n:?} lines\n{}\n{:?}", wrong.join("\n"), run.thrown));
     }
     if run.printed.trim_end() != expected.trim_end() {
         let thrown = run.thrown.map(|d| format!("{d:?}"));
@@ -157,14 +189,16 @@ fn golden_models_do_as_groimp_did() {
     let mut wrong = vec![];
     for folder in folders {
         let name = folder.file_name().unwrap().to_string_lossy().into_owned();
-        let text = std::fs::read_to_string(folder.join("model.rgg")).unwrap();
+        let mut text = std::fs::read_to_string(folder.join("model.rgg")).unwrap();
+        if BY_CHANCE.contains(&&*name) {
+            // Photons that are spread evenly need no millions.
+            text = text.replace("LightModel(4000000,", "LightModel(40000,");
+            text = text.replace("LightModel(300000,", "LightModel(30000,");
+        }
         let expected = std::fs::read_to_string(folder.join("expected.txt")).unwrap();
         let difference = difference(&name, &text, &expected);
-        let is_excused = NOT_PASSING.iter().any(|(known, _)| *known == name);
-        match difference {
-            Some(difference) if !is_excused => wrong.push(format!("{name}:\n{difference}")),
-            None if is_excused => wrong.push(format!("{name} passes now: take it off the list")),
-            _ => {}
+        if let Some(difference) = difference {
+            wrong.push(format!("{name}:\n{difference}"));
         }
     }
     assert!(

@@ -244,7 +244,9 @@ impl Trap {
         diagnostic
             .secondary
             .extend(notes.into_iter().map(|(span, text)| Label { span, text }));
-        diagnostic.hints.extend(hint.filter(|hint| !hint.is_empty()));
+        diagnostic
+            .hints
+            .extend(hint.filter(|hint| !hint.is_empty()));
         let lines = |traced: Vec<Traced>| traced.into_iter().map(Traced::line);
         diagnostic.trace.extend(lines(inner));
         if n_omitted > 0 {

@@ -237,7 +237,9 @@ fn shaders_and_lights(page: &mut String) {
     heading(page, "## Light");
     types(
         page,
-        ["LightNode", "Sky", "SensorNode"].into_iter().filter_map(builtin_named),
+        ["LightNode", "Sky", "SensorNode"]
+            .into_iter()
+            .filter_map(builtin_named),
     );
     page.push('\n');
     members_of(page, |class| {

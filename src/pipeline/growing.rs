@@ -4,6 +4,7 @@ use super::audience::Audience;
 use super::budget;
 use super::failure::Failure;
 use super::inputs::class_name;
+use super::light_models::SceneLight;
 use super::sources::{Sources, placeless};
 use super::studio::Run;
 use crate::check::SourceModel;
@@ -152,6 +153,12 @@ pub fn grow(
     let stop = Box::new(move || token.is_cancelled());
     let mut growth = Growth::new(&run.model, options, output, stop).map_err(blame)?;
     growth.set_files(files);
+    growth.set_light_solver(Box::new(SceneLight {
+        memory,
+        body_nodes: run.options.max_modules.value.get(),
+        cancel: cancel.clone(),
+        audience: audience.clone(),
+    }));
     growth.init().map_err(blame)?;
     let n_steps = steps(&run.options, &growth);
     for step in 0..n_steps {

@@ -13,6 +13,7 @@ pub mod exposing;
 pub mod failure;
 pub mod growing;
 pub mod inputs;
+pub mod light_models;
 pub mod making;
 pub mod packed;
 pub mod project_files;

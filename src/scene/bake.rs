@@ -1,5 +1,6 @@
 //! Bringing the shapes of a group into its frame.
 
+use super::description::OrganId;
 use super::error::{Problem, SceneError};
 use super::group::{
     Group, GroupFrame, Item, ItemKind, MeshShading, PlacedGroup, Quad, ShapeRecord, Solid, Triangle,

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, light_models, lists, matrices,
-    moments, more, new_object, random, shaders, strings, surfaces, vectors,
+    Arguments, Context, Maker, buffers, collections, data, files, freeform, light, light_models,
+    lists, matrices, moments, more, new_object, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;

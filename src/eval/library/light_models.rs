@@ -125,7 +125,8 @@ pub(super) fn set_measure_mode(cx: &mut Context<'_>, args: &[Value]) -> Result<V
     if args.int(1) == MEASURE_RGB {
         return Ok(Value::Null);
     }
-    let message = "spectra are not computed: use `MeasureMode.RGB`, with red, green and blue as three bands";
+    let message =
+        "spectra are not computed: use `MeasureMode.RGB`, with red, green and blue as three bands";
     Err(cx.exception(ClassId::UnsupportedOperationException, message))
 }
 
@@ -196,10 +197,7 @@ fn light_on(cx: &mut Context<'_>, args: &[Value]) -> Result<NodeLight, Trap> {
 }
 
 fn spectrum(bands: [f64; 3]) -> Value {
-    new_object(
-        ClassId::Spectrum3d,
-        Data::Tuple(DVec3::from_array(bands)),
-    )
+    new_object(ClassId::Spectrum3d, Data::Tuple(DVec3::from_array(bands)))
 }
 
 pub(super) fn absorbed(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {

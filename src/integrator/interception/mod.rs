@@ -93,7 +93,7 @@ impl Interception {
                 bytes,
             });
         }
-        let emission = Emission::new(scene, Aim::Everything);
+        let emission = Emission::reaching(scene, Aim::Everything, sensors.bounds());
         let mut sums = Sums::new(n_organs + 1, sensors.len());
         let mut next = self.photons.max(1);
         for round in 0_u64.. {
@@ -146,7 +146,8 @@ impl Interception {
             let ledger = trace(emission, &set, &context, visitor, |tally| {
                 tally.join(&mut bins, &mut sensed);
             });
-            let ledger = ledger.map_err(|RenderError::Cancelled { .. }| InterceptionError::Cancelled)?;
+            let ledger =
+                ledger.map_err(|RenderError::Cancelled { .. }| InterceptionError::Cancelled)?;
             sums.add_batch(&bins, sensors, &sensed, &ledger);
         }
         sums.end_round(n_batches, n);

@@ -5,8 +5,8 @@ use crate::geometry::Shape;
 use crate::integrator::photon::{Account, Ledger, Scale};
 use crate::interpret::Sensor;
 use crate::material::Material;
-use crate::math::Ray;
 use crate::math::functions::pow;
+use crate::math::{Bounds3, Ray};
 use crate::scene::description::{
     Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
@@ -69,6 +69,12 @@ impl SensorField {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.sensors.is_empty()
+    }
+
+    /// A box that holds them all; empty if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds3 {
+        self.discs.as_ref().map_or(Bounds3::EMPTY, Scene::bounds)
     }
 
     /// An empty account for each.

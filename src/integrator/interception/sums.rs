@@ -245,8 +245,13 @@ impl Sums {
                 total += bin;
             }
         }
-        self.total.add_batch(&Powers::of(&total, ledger), total.hits);
-        for (sum, reading) in self.sensed_running.iter_mut().zip(sensors.readings(sensed, ledger)) {
+        self.total
+            .add_batch(&Powers::of(&total, ledger), total.hits);
+        for (sum, reading) in self
+            .sensed_running
+            .iter_mut()
+            .zip(sensors.readings(sensed, ledger))
+        {
             *sum += reading;
         }
         let books = &mut self.books_running;

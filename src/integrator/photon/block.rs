@@ -38,6 +38,12 @@ impl Photons {
             max_depth,
         }
     }
+
+    /// The scale of their books.
+    #[must_use]
+    pub fn scale(&self, emission: &Emission<'_>) -> Scale {
+        Scale::for_mean(emission.power().max_channel() / self.n.max(1) as f64)
+    }
 }
 
 /// Follows photons. Each block of [`BLOCK`] consecutive ones is told to a visitor of its own, made by `visitor`; `join` gets these
@@ -52,7 +58,7 @@ pub fn trace<V: Visitor>(
     visitor: impl Fn() -> V + Sync,
     mut join: impl FnMut(V),
 ) -> Result<Ledger, RenderError> {
-    let scale = Scale::for_mean(emission.power().max_channel() / photons.n.max(1) as f64);
+    let scale = photons.scale(emission);
     let mut ledger = Ledger::new(scale);
     let tracer = Tracer {
         scene: emission.scene,

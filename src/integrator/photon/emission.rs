@@ -51,6 +51,8 @@ pub struct Emission<'s> {
     pub(super) dome: Dome,
     pub(super) sun: Option<SunDisk>,
     pub(super) targets: Targets,
+    /// Of all that photons shall pass.
+    pub(super) bounds: Bounds3,
     pub(super) aim: Aim,
     pub(super) has_planes: bool,
     sources: Vec<Source>,
@@ -77,6 +79,13 @@ impl<'s> Emission<'s> {
     /// Gathers the sources of `scene`. Shining infinite planes send no photons.
     #[must_use]
     pub fn new(scene: &'s Scene, aim: Aim) -> Self {
+        Self::reaching(scene, aim, Bounds3::EMPTY)
+    }
+
+    /// As [`Emission::new`], and the photons also pass all of a box besides, in which something measures them.
+    #[must_use]
+    pub fn reaching(scene: &'s Scene, aim: Aim, besides: Bounds3) -> Self {
+        let bounds = scene.bounds().union(&besides);
         let environment = scene.environment();
         let sun = environment.sun.clone();
         let sun = sun.filter(|sun| !sun.irradiance.is_black());
@@ -84,7 +93,8 @@ impl<'s> Emission<'s> {
             scene,
             dome: Dome::new(environment),
             sun,
-            targets: targets(scene, aim),
+            targets: targets(scene, aim, bounds),
+            bounds,
             aim,
             has_planes: scene.stats().planes > 0,
             sources: Vec::new(),
@@ -236,7 +246,7 @@ fn shares(sources: &[Source], powers: &[Rgb], size: impl Fn(Source) -> f64) -> V
 }
 
 /// What light is aimed at.
-fn targets(scene: &Scene, aim: Aim) -> Targets {
+fn targets(scene: &Scene, aim: Aim, bounds: Bounds3) -> Targets {
     let has_planes = scene.stats().planes > 0;
     if aim == Aim::Specular {
         let found = scene.extents_of(Material::is_specular, BOXES);
@@ -244,7 +254,6 @@ fn targets(scene: &Scene, aim: Aim) -> Targets {
             return Targets::new(&found.boxes, false);
         }
     }
-    let bounds = scene.bounds();
     if bounds.is_empty() {
         return Targets::new(&[], has_planes);
     }

@@ -186,7 +186,7 @@ impl Emission<'_> {
 
     /// The point of a line of light where it has not met anything of the scene yet.
     fn before_all(&self, point: DVec3, direction: DVec3) -> DVec3 {
-        let bounds = self.scene.bounds();
+        let bounds = self.bounds;
         let radius = bounds.diagonal().length();
         let back = (point - bounds.center()).dot(direction) + radius;
         let start = point - direction * back.max(0.0);

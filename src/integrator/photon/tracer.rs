@@ -59,6 +59,9 @@ pub enum Onward {
 pub trait Visitor: Send {
     /// A photon arrives at a surface that scatters or keeps light.
     fn arrives(&mut self, hit: &PhotonHit<'_>) -> Onward;
+
+    /// A photon of this power, W per channel, flies along all of a ray, between two surfaces or out of the scene.
+    fn flies(&mut self, _ray: &Ray, _power: Rgb) {}
 }
 
 /// What all photons of a scene share.
@@ -137,11 +140,14 @@ impl<'s> Tracer<'s> {
         books.n_rays += 1;
         let mut next = self.scene.closest(&flight.ray);
         loop {
-            self.absorb(
-                flight,
-                next.map_or(f64::INFINITY, |hit| hit.t) - from,
-                books,
-            );
+            let until = next.map_or(f64::INFINITY, |hit| hit.t);
+            let way = Ray {
+                t_min: from,
+                t_max: until,
+                ..flight.ray
+            };
+            visitor.flies(&way, flight.power);
+            self.absorb(flight, until - from, books);
             let Some(hit) = next else {
                 books.escaped.add(scale.quanta(flight.power));
                 return None;
