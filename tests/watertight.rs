@@ -41,6 +41,7 @@ fn escapes(scene: &Scene, mesh: &TriangleMesh, to_world: &DAffine3, radius: f64)
     escaped
 }
 
+/// C-23.
 #[test]
 fn nothing_escapes_from_a_closed_mesh_of_any_size_anywhere() {
     for radius in [1e-6, 1.0, 1e6] {
@@ -71,6 +72,7 @@ fn nothing_escapes_from_a_closed_mesh_of_any_size_anywhere() {
     }
 }
 
+/// C-23, in instances; C-30.
 #[test]
 fn nothing_escapes_through_mirrored_and_stretched_instances() {
     let ball = icosphere(4, 1.0);
@@ -157,6 +159,7 @@ fn false_hits(scene: &Scene, center: DVec3, size: f64, n: usize) -> (usize, usiz
     (lost, returned)
 }
 
+/// C-24: convex bodies of all sizes, near and far, grazing directions among them.
 #[test]
 fn bounces_inside_and_outside_convex_bodies_never_meet_their_own_surface() {
     let frustum = |s: f64| Shape::Frustum {
@@ -206,6 +209,7 @@ fn bounces_inside_and_outside_convex_bodies_never_meet_their_own_surface() {
     }
 }
 
+/// C-24: one large triangle that passes close to the origin.
 #[test]
 fn bounces_off_a_large_triangle_through_the_origin_meet_nothing() {
     let mut random = Random(3);
@@ -241,6 +245,7 @@ fn bounces_off_a_large_triangle_through_the_origin_meet_nothing() {
     }
 }
 
+/// C-24, in instances; C-30.
 #[test]
 fn bounces_in_instances_meet_nothing() {
     let mut random = Random(8);

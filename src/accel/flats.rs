@@ -6,7 +6,7 @@
 
 use super::simd::{Lanes, WIDTH};
 use crate::geometry::triangle::Shear;
-use crate::math::tolerance::{FLAT_DEPTH_MARGIN, FLAT_MARGIN};
+use crate::math::tolerance::{FLAT_DEPTH_MARGIN, FLAT_DRIFT, FLAT_MARGIN};
 use glam::DVec3;
 
 /// Eight flat primitives, 320 bytes.
@@ -22,11 +22,11 @@ pub struct FlatBlock {
 /// A ray prepared for blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct FlatRay {
-    origin: [f32; 3],
+    origin: [f64; 3],
     axes: [u8; 3],
-    shear: [f32; 2],
+    shear: [f64; 2],
     /// ±1, the direction along the axis that becomes z.
-    sign: f32,
+    sign: f64,
 }
 
 impl FlatRay {
@@ -36,10 +36,10 @@ impl FlatRay {
     pub fn new(shear: &Shear) -> Self {
         let (origin, axes, [x, y, z]) = shear.parts();
         Self {
-            origin: origin.map(|x| x as f32),
+            origin,
             axes: axes.map(|axis| axis as u8),
-            shear: [x as f32, y as f32],
-            sign: 1.0_f32.copysign(z as f32),
+            shear: [x, y],
+            sign: 1.0_f64.copysign(z),
         }
     }
 }
@@ -78,26 +78,36 @@ impl FlatBlock {
 
     /// Bit i is set if the ray may hit the one in place i, between `start` and `limit` in the parameter of
     /// [`BoxRay`](super::BoxRay).
+    ///
+    /// Coordinates are counted from the point of the ray at `near`, in the same parameter: the nearer that is to the block, the
+    /// fewer are named in vain.
     #[inline(always)]
     #[must_use]
-    pub fn candidates<V: Lanes>(&self, ray: &FlatRay, start: f32, limit: f32) -> u32 {
+    pub fn candidates<V: Lanes>(&self, ray: &FlatRay, [near, start, limit]: [f32; 3]) -> u32 {
         // No closures and no `map`: what they are handed to may not be inlined, see `simd`.
         let [x, y, z] = ray.axes;
         let (x, y, z) = (usize::from(x), usize::from(y), usize::from(z));
-        let (shear_x, shear_y) = (V::splat(ray.shear[0]), V::splat(ray.shear[1]));
+        let (shear_x, shear_y) = (V::splat(ray.shear[0] as f32), V::splat(ray.shear[1] as f32));
+        let step = f64::from(near) * ray.sign;
+        let near_x = (ray.origin[0] + ray.shear[0] * step) as f32;
+        let near_y = (ray.origin[1] + ray.shear[1] * step) as f32;
+        let near_z = (ray.origin[2] + step) as f32;
         let zero = V::splat(0.0);
 
         // Into the frame where the ray is the z axis.
-        let depth = V::load(&self.corner[z]).sub(V::splat(ray.origin[2]));
-        let corner_x = V::load(&self.corner[x]).sub(V::splat(ray.origin[0]));
-        let corner_y = V::load(&self.corner[y]).sub(V::splat(ray.origin[1]));
+        let depth = V::load(&self.corner[z]).sub(V::splat(near_z));
+        let corner_x = V::load(&self.corner[x]).sub(V::splat(near_x));
+        let corner_y = V::load(&self.corner[y]).sub(V::splat(near_y));
+        let away = corner_x.abs().add(corner_y.abs()).add(depth.abs());
         let corner = [
             corner_x.sub(shear_x.mul(depth)),
             corner_y.sub(shear_y.mul(depth)),
         ];
         let first = Edge::new(&self.edges[0], [x, y, z], [shear_x, shear_y]);
         let second = Edge::new(&self.edges[1], [x, y, z], [shear_x, shear_y]);
-        let margin = first.length.add(second.length).mul(V::splat(FLAT_MARGIN));
+        let length = first.length.add(second.length);
+        let error = away.add(length).mul(V::splat(FLAT_DRIFT));
+        let margin = length.mul(error.add(V::splat(FLAT_MARGIN)));
 
         // Coordinates of the z axis along the edges, times the area; all have the sign of the area if it passes inside.
         let area = cross(first.flat, second.flat);
@@ -110,15 +120,18 @@ impl FlatBlock {
         let most = u.max(v).max(rest_u.max(rest_v)).max(diagonal);
         let inside = zero.sub(margin).at_most(least) | most.at_most(margin);
 
-        // The part of z that it can reach into.
-        let sign = V::splat(ray.sign);
-        let depth = depth.mul(sign);
-        let (rise, other) = (first.rise.mul(sign), second.rise.mul(sign));
-        let nearest = depth.add(rise.min(zero)).add(other.min(zero));
-        let farthest = depth.add(rise.max(zero)).add(other.max(zero));
-        inside
-            & nearest.at_most(V::splat(limit + FLAT_DEPTH_MARGIN))
-            & V::splat(start - FLAT_DEPTH_MARGIN).at_most(farthest)
+        // Where the ray meets its plane, times the area. The error of the area counts as far as that may be.
+        let rise = u.mul(first.rise).add(v.mul(second.rise));
+        let at = depth.mul(area).add(rise).signed_by(area);
+        let at = at.signed_by(V::splat(ray.sign as f32));
+        let area = area.abs();
+        let (start, limit) = (V::splat(start - near), V::splat(limit - near));
+        let error = margin
+            .mul(away.add(length))
+            .add(area.mul(V::splat(FLAT_DEPTH_MARGIN)));
+        let latest = limit.mul(area).add(error).add(margin.mul(limit.abs()));
+        let earliest = start.mul(area).sub(error).sub(margin.mul(start.abs()));
+        inside & at.at_most(latest) & earliest.at_most(at)
     }
 }
 

@@ -10,6 +10,7 @@
 //! `f32` can do; [`crate::scene`] does so by normalising every group to the same size.
 
 mod build;
+mod cover;
 mod extreme;
 mod flats;
 mod node;

@@ -34,6 +34,8 @@ pub trait Lanes: Copy {
     fn max(self, other: Self) -> Self;
     /// Without sign.
     fn abs(self) -> Self;
+    /// The other sign where that of `other` is minus.
+    fn signed_by(self, other: Self) -> Self;
     /// Bit i is set if lane i is at most that of `other`; not if one of them is NaN.
     fn at_most(self, other: Self) -> u32;
     /// The lanes of `other` where the highest bit of `flags` is set, those of `self` elsewhere.
@@ -120,6 +122,11 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
+    fn signed_by(self, other: Self) -> Self {
+        self.zip(other, |a, b| if b.is_sign_negative() { -a } else { a })
+    }
+
+    #[inline(always)]
     fn at_most(self, other: Self) -> u32 {
         (0..WIDTH).fold(0, |bits, lane| {
             bits | u32::from(self.0[lane] <= other.0[lane]) << lane
@@ -140,9 +147,9 @@ impl Lanes for Scalar {
 mod avx2 {
     use super::{Kernel, Lanes, WIDTH};
     use std::arch::x86_64::{
-        __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps,
-        _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
-        _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps,
+        __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
+        _mm256_cmp_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
+        _mm256_mul_ps, _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
     };
 
     /// The computation, compiled for AVX2.
@@ -213,6 +220,12 @@ mod avx2 {
         }
 
         #[inline(always)]
+        fn signed_by(self, other: Self) -> Self {
+            // SAFETY: AVX2 is there (see `Avx2`).
+            Self(unsafe { _mm256_xor_ps(self.0, _mm256_and_ps(_mm256_set1_ps(-0.0), other.0)) })
+        }
+
+        #[inline(always)]
         fn at_most(self, other: Self) -> u32 {
             // SAFETY: AVX2 is there (see `Avx2`).
             let bits = unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) };
@@ -271,6 +284,7 @@ mod tests {
                         a.min(b),
                         a.max(b),
                         a.abs(),
+                        a.signed_by(b),
                         a.or_where(b, &flags),
                         V::splat(numbers[first]),
                     ] {

@@ -89,8 +89,9 @@ pub enum Step<'b> {
 pub trait Visitor<'b> {
     /// Whether near boxes should come before far ones.
     const NEAREST_FIRST: bool;
-    /// Is shown a leaf that the ray meets, as [`Bvh::relabel`] called it.
-    fn leaf<V: Lanes>(&mut self, leaf: u32, limit: f32) -> Step<'b>;
+    /// Is shown a leaf that the ray meets, as [`Bvh::relabel`] called it, from where the ray enters its box to the end of what
+    /// counts.
+    fn leaf<V: Lanes>(&mut self, leaf: u32, part: [f32; 2]) -> Step<'b>;
     /// Is told that the hierarchy entered last is done; answers with the one around it.
     fn leave(&mut self) -> Walking<'b>;
 }
@@ -102,9 +103,9 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
     visitor: &mut W,
 ) -> ControlFlow<()> {
     let mut stack = TraversalStack::new();
-    let mut next = Child::ROOT;
+    let mut next = Waiting::new(0.0, Child::ROOT);
     loop {
-        if let Some(number) = next.as_node() {
+        if let Some(number) = next.child().as_node() {
             if let Some(node) = walking.bvh.nodes.get(number)
                 && let Some(nearest) = node.push_entered::<V, W>(&walking, &mut stack)
             {
@@ -112,7 +113,7 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
                 continue;
             }
         } else {
-            match visitor.leaf::<V>(next.0, walking.limit) {
+            match visitor.leaf::<V>(next.child().0, [next.enter(), walking.limit]) {
                 Step::Continue(nearer) => walking.limit = nearer,
                 Step::Enter(inner, rest) => {
                     if let Some(rest) = rest {
@@ -120,7 +121,7 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
                     }
                     stack.push(Waiting::new(0.0, Child::LEAVE));
                     walking = inner;
-                    next = Child::ROOT;
+                    next = Waiting::new(0.0, Child::ROOT);
                     continue;
                 }
                 Step::Stop => return ControlFlow::Break(()),
@@ -135,7 +136,7 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
             if waiting.child() == Child::LEAVE {
                 walking = visitor.leave();
             } else if waiting.enter() <= walking.limit {
-                break waiting.child();
+                break waiting;
             }
         };
     }
@@ -148,7 +149,7 @@ impl Node {
         &self,
         walking: &Walking<'b>,
         stack: &mut TraversalStack,
-    ) -> Option<Child> {
+    ) -> Option<Waiting> {
         let ray = &walking.ray;
         // Where the ray is inside all three slabs. A NaN, from 0 · ∞ for a ray in the plane of a face, compares false and
         // changes nothing, so such a ray is inside that slab.
@@ -171,9 +172,6 @@ impl Node {
         }
         let lane = lanes.trailing_zeros() as usize % WIDTH;
         lanes &= lanes - 1;
-        if lanes == 0 {
-            return Some(self.children[lane]);
-        }
         let enters = enter.store();
         let mut nearest = Waiting::new(enters[lane], self.children[lane]);
         let mut fresh = 0;
@@ -190,6 +188,6 @@ impl Node {
                 stack.settle(fresh);
             }
         }
-        Some(nearest.child())
+        Some(nearest)
     }
 }

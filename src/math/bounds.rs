@@ -101,7 +101,15 @@ impl Bounds3 {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        Self::of(self.corners().map(|corner| map.transform_point3(corner)))
+        let center = map.transform_point3(self.center());
+        let half = self.max * 0.5 - self.min * 0.5;
+        let reach = map.matrix3.x_axis.abs() * half.x
+            + map.matrix3.y_axis.abs() * half.y
+            + map.matrix3.z_axis.abs() * half.z;
+        Self {
+            min: center - reach,
+            max: center + reach,
+        }
     }
 }
 

@@ -59,10 +59,16 @@ pub const BOX_PADDING: f32 = 1.0 / 512.0;
 /// How far beside a triangle or parallelogram a ray may pass, in the normalised units of a group, and still count as a candidate
 /// for the exact test, per length of its two edges.
 ///
-/// With coordinates up to 2¹³ and directions whose largest component is 1, the sheared corner is off by at most 2⁻⁹, which
-/// times the edges makes 2⁻⁸; the roundings of the sheared edges, times the distance, add 2⁻⁷, those of the products 2⁻⁷. Half of it would
-/// still be enough; ten times larger only lets the exact test refuse more. Used by [`crate::accel`].
-pub const FLAT_MARGIN: f32 = 1.0 / 32.0;
+/// Coordinates up to 2¹² are stored with an error of 2⁻¹³ and the point of the ray beside them with one of 2⁻¹²; shearing doubles
+/// both, which times the edges makes at most 2⁻⁹. Four times less loses hits; ten times larger only lets the exact test refuse
+/// more. Used by [`crate::accel`].
+pub const FLAT_MARGIN: f32 = 1.0 / 256.0;
+
+/// The same per unit of distance from the point of the ray that coordinates are counted from, and of length of the edges.
+///
+/// The roundings of about forty operations on them, 2⁻²⁴ each, make 2⁻¹⁸·⁶; the rest is reserve. Ten times larger would double the
+/// candidates among triangles of a hundred units. Used by [`crate::accel`].
+pub const FLAT_DRIFT: f32 = 1.0 / 131_072.0;
 
 /// The same along the ray, in normalised units: roundings of corner and start, each at most 2⁻¹², and what the edges may
 /// add. Ten times larger costs nothing that could be measured. Used by [`crate::accel`].

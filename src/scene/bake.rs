@@ -20,6 +20,9 @@ use rayon::prelude::*;
 /// Triangles and parallelograms per leaf: as many as are tested at once.
 const LEAF_SIZE: usize = accel::WIDTH;
 
+/// Most boxes that stand for a group when the boxes of its instances are made.
+const COVER: usize = 32;
+
 /// Builds a group whose instances refer to groups in `built`.
 pub(super) fn bake(
     planned: &PlannedGroup,
@@ -45,6 +48,7 @@ fn empty_group(frame: GroupFrame) -> Group {
     Group {
         frame,
         bounds: Bounds3::EMPTY,
+        cover: Vec::new(),
         triangles: Vec::new(),
         quads: Vec::new(),
         solids: Vec::new(),
@@ -306,6 +310,7 @@ fn arrange(group: &mut Group, built: &[Group]) {
     ];
     let (bvh, leaves) = accel::build(&boxes, &kinds);
     group.bvh = bvh;
+    group.cover = group.bvh.cover(COVER);
     group.bounds = boxes.iter().fold(Bounds3::EMPTY, |bounds, part| {
         let corner = |x: [f32; 3]| DVec3::from_array(x.map(f64::from));
         bounds.with(corner(part.min)).with(corner(part.max))
@@ -407,9 +412,11 @@ fn boxes(group: &Group, built: &[Group]) -> Vec<Box3> {
         .par_iter()
         .map(|solid| solid.form.bounds_under(&solid.to_unit.inverse()));
     let instances = group.instances.par_iter().map(|instance| {
-        built[instance.group as usize]
-            .bounds
-            .transformed(&group.to_child(instance).inverse())
+        let to_parent = group.to_child(instance).inverse();
+        let cover = &built[instance.group as usize].cover;
+        cover.iter().fold(Bounds3::EMPTY, |bounds, part| {
+            bounds.union(&part.transformed(&to_parent))
+        })
     });
     triangles
         .chain(quads)

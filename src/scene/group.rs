@@ -44,6 +44,8 @@ pub(super) struct Group {
     pub(super) frame: GroupFrame,
     /// The box of everything in it, widened like all stored boxes; empty if it holds nothing.
     pub(super) bounds: Bounds3,
+    /// A few boxes that hold everything, closer than `bounds` does.
+    pub(super) cover: Vec<Bounds3>,
     pub(super) triangles: Vec<Triangle>,
     pub(super) quads: Vec<Quad>,
     pub(super) solids: Vec<Solid>,
@@ -233,6 +235,7 @@ impl Group {
     /// Memory it occupies, in bytes.
     pub(super) fn bytes(&self) -> usize {
         size_of::<Self>()
+            + size_of_val(&*self.cover)
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.quads)
             + size_of_val(&*self.solids)

@@ -124,9 +124,10 @@ impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
     const NEAREST_FIRST: bool = !S::EVERY;
 
     #[inline(always)]
-    fn leaf<V: Lanes>(&mut self, leaf: u32, limit: f32) -> Step<'s> {
+    fn leaf<V: Lanes>(&mut self, leaf: u32, part: [f32; 2]) -> Step<'s> {
+        let [_, limit] = part;
         let done = match Item::from_bits(leaf).map(Item::kind) {
-            Some(ItemKind::Block(index)) => self.offer_block::<V>(index, limit),
+            Some(ItemKind::Block(index)) => self.offer_block::<V>(index, part),
             Some(ItemKind::Solid(index)) => self.offer_solid(index),
             Some(ItemKind::TwoInstances(index)) => {
                 let second = Item::new(ItemKind::Instance(index + 1));
@@ -199,12 +200,12 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
 
     /// Offers what the ray meets of eight flat primitives.
     #[inline(always)]
-    fn offer_block<V: Lanes>(&mut self, index: usize, limit: f32) -> ControlFlow<()> {
+    fn offer_block<V: Lanes>(&mut self, index: usize, [near, limit]: [f32; 2]) -> ControlFlow<()> {
         let Some(block) = self.at.group.blocks.get(index) else {
             return ControlFlow::Continue(());
         };
         let start = self.at.box_ray.start(self.sink.start() - self.at.offset);
-        let mut lanes = block.candidates::<V>(&self.at.flat_ray, start, limit);
+        let mut lanes = block.candidates::<V>(&self.at.flat_ray, [near, start, limit]);
         while lanes != 0 {
             let name = block.name(lanes.trailing_zeros() as usize);
             lanes &= lanes - 1;

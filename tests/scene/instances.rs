@@ -130,6 +130,7 @@ fn the_hierarchy_finds_what_trying_everything_finds() {
     }
 }
 
+/// C-21, of what rays find (the picture: `tests/extremes.rs`).
 #[test]
 fn scaling_by_a_power_of_two_changes_no_bit() {
     let shapes = |scale: f64| {
@@ -165,6 +166,7 @@ fn worlds_of_all(random: &mut Random) -> Vec<PlacedShape> {
         .collect()
 }
 
+/// C-22, of what rays find (the picture: `tests/extremes.rs`).
 #[test]
 fn distance_of_the_eye_costs_no_digits() {
     // A plant of a metre, seen from a million kilometres away.

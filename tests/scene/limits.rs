@@ -21,6 +21,7 @@ fn problem(shape: Shape, to_group: DAffine3) -> Option<(u32, Problem)> {
     }
 }
 
+/// C-27; C-30: singular maps.
 #[test]
 fn impossible_numbers_are_refused_with_the_organ() {
     let vertex = |x: f64| mesh(soup(&[[DVec3::new(x, 0.0, 0.0), DVec3::Y, DVec3::Z]]));
@@ -269,6 +270,7 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
+/// C-65: what an instance may cost.
 #[test]
 fn an_instance_of_a_forest_costs_little_memory() {
     let mut random = Random(57);

@@ -187,6 +187,7 @@ fn parallel_rays_count_the_projected_area() {
     }
 }
 
+/// C-28: directions with ±0.
 #[test]
 fn axis_parallel_rays_with_signed_zeros_hit_everything_and_stay_finite() {
     for shape in shapes() {
@@ -241,6 +242,7 @@ fn axis_parallel_rays_with_signed_zeros_hit_everything_and_stay_finite() {
     }
 }
 
+/// C-28: grazing rays.
 #[test]
 fn grazing_rays_are_finite_and_a_plane_is_not_met_from_within() {
     let shapes = vec![
@@ -302,6 +304,7 @@ fn a_plane_is_seen_from_both_sides_wherever_it_is_put() {
     }
 }
 
+/// C-25.
 #[test]
 fn thin_layers_are_seen_in_order() {
     for gap in [1e-5, 1e-7] {
@@ -329,6 +332,7 @@ fn thin_layers_are_seen_in_order() {
     }
 }
 
+/// C-26, C-29: each of what coincides is hit once, in the order of numbers.
 #[test]
 fn coincident_surfaces_are_hit_in_the_order_of_their_numbers_each_once() {
     let square = [DVec3::NEG_ONE, DVec3::X * 3.0, DVec3::Y * 3.0];
@@ -379,6 +383,7 @@ pub(crate) fn all_along(scene: &Scene, ray: &Ray) -> Vec<Hit> {
     std::iter::successors(scene.closest(ray), |hit| scene.closest_after(ray, hit)).collect()
 }
 
+/// C-26.
 #[test]
 fn degenerate_triangles_and_needles_do_no_harm() {
     let needle = [DVec3::ZERO, DVec3::X * 1e3, DVec3::new(1e3, 1e-3, 0.0)];
