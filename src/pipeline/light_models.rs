@@ -100,7 +100,7 @@ impl SceneLight {
             cancel: &self.cancel,
             progress: &|progress| audience.progress(progress.done, progress.total),
         };
-        let found = interception.solve(scene, organs.list().len(), sensors, &context);
+        let found = interception.solve(scene, organs.list().len(), sensors, None, &context);
         audience.begins("growing");
         found.map_err(|error| Box::new(blame(&error)))
     }

@@ -3,7 +3,7 @@
 use crate::geometry::Shape;
 use crate::light::{Environment, Light};
 use crate::material::Material;
-use glam::DAffine3;
+use glam::{DAffine3, DVec2};
 
 /// Index into [`SceneDescription::materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -74,4 +74,46 @@ pub struct SceneDescription {
     pub lights: Vec<Light>,
     /// Light from infinitely far away: sky and sun.
     pub environment: Environment,
+}
+
+impl SceneDescription {
+    /// The same world, put beside itself so many times to each side along x and y, at distances of `size` metres: what hangs over
+    /// the sides of a plot of that size is then there on the opposite side as well. Lights stay single.
+    #[must_use]
+    pub fn beside_itself(mut self, size: DVec2, times: [u32; 2]) -> Self {
+        let Some(root) = self.root.filter(|_| times != [0; 2]) else {
+            return self;
+        };
+        let [n_x, n_y] = times.map(i64::from);
+        let mut instances = Vec::new();
+        for x in -n_x..=n_x {
+            for y in -n_y..=n_y {
+                let shift = DVec2::new(x as f64, y as f64) * size;
+                instances.push(Instance {
+                    group: root,
+                    to_group: DAffine3::from_translation(shift.extend(0.0)),
+                    organ: OrganId::COPY,
+                });
+            }
+        }
+        // A plane is its own neighbour.
+        let planes = match self.groups.get_mut(root.0 as usize) {
+            Some(group) => {
+                let (planes, others) = std::mem::take(&mut group.shapes)
+                    .into_iter()
+                    .partition(|placed| placed.shape == Shape::Plane);
+                group.shapes = others;
+                planes
+            }
+            None => vec![],
+        };
+        self.root = Some(GroupId(
+            u32::try_from(self.groups.len()).unwrap_or(u32::MAX),
+        ));
+        self.groups.push(Group {
+            shapes: planes,
+            instances,
+        });
+        self
+    }
 }

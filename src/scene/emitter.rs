@@ -219,7 +219,7 @@ impl Emitter {
     }
 
     /// The emitter that a stored primitive becomes, or `None` if it has no area that can be counted.
-    fn new(
+    pub(super) fn new(
         group: &Group,
         kind: ItemKind,
         shape: &ShapeRecord,

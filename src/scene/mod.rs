@@ -9,6 +9,7 @@
 //!   surface   what shading needs to know there
 //!   emitter   surfaces that shine, for sampling
 //!   extents   where the surfaces of some materials are
+//!   areas     how much surface each organ has
 //! ```
 //! Groups within groups are never copied: a ray is carried into the frame of each instance it enters. A primitive of the
 //! world is therefore not stored anywhere; its number, a [`PrimitiveId`](crate::math::PrimitiveId), counts through all
@@ -41,6 +42,7 @@
 //! # Ok::<(), understory::scene::SceneError>(())
 //! ```
 
+mod areas;
 mod bake;
 pub mod description;
 mod emitter;

@@ -17,7 +17,7 @@ mod sums;
 pub use sensors::SensorField;
 pub use sums::{Books, Errors, Lighting, OrganLight};
 
-use super::photon::{Aim, Emission, Photons, trace};
+use super::photon::{Aim, Emission, Photons, Plot, trace};
 use super::{Progress, RenderContext, RenderError};
 use crate::math::rng;
 use crate::scene::Scene;
@@ -75,7 +75,8 @@ const EXPECTED_RATE: f64 = 0.6;
 
 impl Interception {
     /// Follows photons and counts them. Organs are those that surfaces of the scene [belong to](crate::scene::SurfacePoint::owner),
-    /// with numbers below `n_organs`; what has another number is counted as [`Lighting::rest`].
+    /// with numbers below `n_organs`; what has another number is counted as [`Lighting::rest`]. With a `plot` the world repeats
+    /// itself; the scene must hold what hangs over its sides on the opposite side as well, and nothing that shines may do so.
     ///
     /// # Errors
     /// If the context is cancelled, or there is no room.
@@ -84,6 +85,7 @@ impl Interception {
         scene: &Scene,
         n_organs: usize,
         sensors: &SensorField,
+        plot: Option<Plot>,
         context: &RenderContext<'_>,
     ) -> Result<Lighting, InterceptionError> {
         let bytes = Sums::bytes(n_organs + 1, sensors.len());
@@ -93,7 +95,10 @@ impl Interception {
                 bytes,
             });
         }
-        let emission = Emission::reaching(scene, Aim::Everything, sensors.bounds());
+        let emission = match plot {
+            Some(plot) => Emission::into_plot(scene, plot),
+            None => Emission::reaching(scene, Aim::Everything, sensors.bounds()),
+        };
         let mut sums = Sums::new(n_organs + 1, sensors.len());
         let mut next = self.photons.max(1);
         for round in 0_u64.. {

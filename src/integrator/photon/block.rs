@@ -64,6 +64,7 @@ pub fn trace<V: Visitor>(
         scene: emission.scene,
         bodies: Bodies::new(emission.scene),
         max_depth: photons.max_depth,
+        plot: emission.plot,
     };
     let Range { start, end } = photons.range;
     let total = end.saturating_sub(start);

@@ -3,6 +3,7 @@
 //! A photon's power is what its source sends along a ray, divided by the density with which that ray was chosen and by the number
 //! of photons, so that all together carry the power of the sources, whatever the choices.
 
+use super::plot::Plot;
 use super::source::{Source, Start};
 use super::target::Targets;
 use crate::color::Rgb;
@@ -53,6 +54,8 @@ pub struct Emission<'s> {
     pub(super) targets: Targets,
     /// Of all that photons shall pass.
     pub(super) bounds: Bounds3,
+    /// Where the world repeats itself.
+    pub(super) plot: Option<Plot>,
     pub(super) aim: Aim,
     pub(super) has_planes: bool,
     sources: Vec<Source>,
@@ -86,6 +89,21 @@ impl<'s> Emission<'s> {
     #[must_use]
     pub fn reaching(scene: &'s Scene, aim: Aim, besides: Bounds3) -> Self {
         let bounds = scene.bounds().union(&besides);
+        Self::aimed(scene, aim, targets(scene, aim, bounds), bounds)
+    }
+
+    /// The light of a plot that repeats itself: from far away, what passes the plot once; from lamps in it, everything.
+    #[must_use]
+    pub fn into_plot(scene: &'s Scene, plot: Plot) -> Self {
+        let bounds = plot.bounds();
+        let targets = Targets::new(&[plot.top()], true);
+        Self {
+            plot: Some(plot),
+            ..Self::aimed(scene, Aim::Everything, targets, bounds)
+        }
+    }
+
+    fn aimed(scene: &'s Scene, aim: Aim, targets: Targets, bounds: Bounds3) -> Self {
         let environment = scene.environment();
         let sun = environment.sun.clone();
         let sun = sun.filter(|sun| !sun.irradiance.is_black());
@@ -93,8 +111,9 @@ impl<'s> Emission<'s> {
             scene,
             dome: Dome::new(environment),
             sun,
-            targets: targets(scene, aim, bounds),
+            targets,
             bounds,
+            plot: None,
             aim,
             has_planes: scene.stats().planes > 0,
             sources: Vec::new(),

@@ -10,6 +10,7 @@
 //! target     what photons are aimed at      source    where they leave each kind of source
 //! emission   which source, how much power   tracer    one photon's way
 //! ledger     exact books                    block     many photons in parallel
+//! plot       where the world repeats itself
 //! ```
 //! Shining infinite planes send no photons: their power is infinite. Parallel light and sky are sent through the scene's box; where
 //! there are infinite planes, also through boxes nine times as wide, and what planes further away throw back is left out.
@@ -17,6 +18,7 @@
 mod block;
 mod emission;
 mod ledger;
+mod plot;
 mod source;
 mod target;
 mod tracer;
@@ -24,4 +26,5 @@ mod tracer;
 pub use block::{BLOCK, Photons, trace};
 pub use emission::{Aim, Emission, Photon};
 pub use ledger::{Account, Ledger, Quanta, Scale};
+pub use plot::Plot;
 pub use tracer::{History, Onward, PhotonHit, Visitor};

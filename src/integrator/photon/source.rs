@@ -186,6 +186,9 @@ impl Emission<'_> {
 
     /// The point of a line of light where it has not met anything of the scene yet.
     fn before_all(&self, point: DVec3, direction: DVec3) -> DVec3 {
+        if let Some(plot) = &self.plot {
+            return plot.before_all(point, direction);
+        }
         let bounds = self.bounds;
         let radius = bounds.diagonal().length();
         let back = (point - bounds.center()).dot(direction) + radius;

@@ -2,6 +2,7 @@
 
 use super::emission::Photon;
 use super::ledger::Ledger;
+use super::plot::{Leg, Plot};
 use crate::color::Rgb;
 use crate::integrator::medium::{Bodies, Media, left_after};
 use crate::material::{Density, Optics, ScatterNumbers, ScatterSample, ScatteringFrame, Transport};
@@ -70,7 +71,12 @@ pub(super) struct Tracer<'s> {
     pub(super) bodies: Bodies<'s>,
     /// Scatterings after which a photon is lost.
     pub(super) max_depth: u32,
+    /// Where the world repeats itself.
+    pub(super) plot: Option<Plot>,
 }
+
+/// How often a photon may go round a plot before it is given up: one that flies level may never meet anything.
+const MOST_ROUNDS: u32 = 10_000;
 
 /// A photon on its way.
 struct Flight {
@@ -103,7 +109,7 @@ impl<'s> Tracer<'s> {
         books.n_photons += 1;
         books.emitted.add(books.scale().quanta(photon.power));
         let mut flight = Flight {
-            ray: photon.ray,
+            ray: self.plot.map_or(photon.ray, |plot| plot.enter(&photon.ray)),
             power: photon.power,
             media: self.bodies.around(photon.ray.origin),
             history: if photon.is_direct {
@@ -136,11 +142,13 @@ impl<'s> Tracer<'s> {
     ) -> Option<Arrival<'s>> {
         let scale = books.scale();
         let mut passages = 0..u16::MAX;
+        let mut rounds = 0;
         let mut from = 0.0;
+        let mut side = self.begin_leg(flight);
         books.n_rays += 1;
         let mut next = self.scene.closest(&flight.ray);
         loop {
-            let until = next.map_or(f64::INFINITY, |hit| hit.t);
+            let until = next.map_or(flight.ray.t_max, |hit| hit.t);
             let way = Ray {
                 t_min: from,
                 t_max: until,
@@ -149,8 +157,22 @@ impl<'s> Tracer<'s> {
             visitor.flies(&way, flight.power);
             self.absorb(flight, until - from, books);
             let Some(hit) = next else {
-                books.escaped.add(scale.quanta(flight.power));
-                return None;
+                let Some(shift) = side else {
+                    books.escaped.add(scale.quanta(flight.power));
+                    return None;
+                };
+                rounds += 1;
+                if rounds > MOST_ROUNDS {
+                    books.lost.add(scale.quanta(flight.power));
+                    return None;
+                }
+                let at = flight.ray.at(flight.ray.t_max) + shift;
+                flight.ray = Ray::new(at, flight.ray.direction);
+                from = 0.0;
+                side = self.begin_leg(flight);
+                books.n_rays += 1;
+                next = self.scene.closest(&flight.ray);
+                continue;
             };
             let passage = passages.next();
             if let Some(arrival) = self.meet(flight, &hit, passage, visitor, books) {
@@ -162,6 +184,17 @@ impl<'s> Tracer<'s> {
             from = hit.t;
             books.n_rays += 1;
             next = self.scene.closest_after(&flight.ray, &hit);
+        }
+    }
+
+    /// Ends the ray of a photon at the side of the plot it comes to, if there is a plot; gives by what it is moved there.
+    fn begin_leg(&self, flight: &mut Flight) -> Option<DVec3> {
+        match self.plot?.leg(&flight.ray) {
+            Leg::Last => None,
+            Leg::Side(t, shift) => {
+                flight.ray.t_max = t;
+                Some(shift)
+            }
         }
     }
 
