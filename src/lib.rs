@@ -47,6 +47,7 @@ pub mod interpret;
 pub mod sampler;
 pub mod film;
 pub mod integrator;
+pub mod validation;
 
 // ── output and shell ──
 pub mod image;

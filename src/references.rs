@@ -25,6 +25,10 @@
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
 //! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
 //!
+//! # ContyKulla2018
+//! A. Conty Estevez, C. Kulla: Importance Sampling of Many Lights with Adaptive Tree Splitting. Proceedings of the ACM on
+//! Computer Graphics and Interactive Techniques 1(2), 2018. <https://doi.org/10.1145/3233305>
+//!
 //! # Cook1984
 //! R. Cook, T. Porter, L. Carpenter: Distributed Ray Tracing. SIGGRAPH, 1984. <https://doi.org/10.1145/800031.808590>
 //!
@@ -135,6 +139,9 @@
 //!
 //! # PNG3
 //! W3C: Portable Network Graphics (PNG) Specification (Third Edition), 2025. <https://www.w3.org/TR/png-3/>
+//!
+//! # PBRT4
+//! M. Pharr, W. Jakob, G. Humphreys: Physically Based Rendering, 4th edition. MIT Press, 2023. <https://pbr-book.org>
 //!
 //! # PieglTiller1997
 //! L. Piegl, W. Tiller: The NURBS Book. 2nd edition. Springer, 1997. <https://doi.org/10.1007/978-3-642-59223-2>

@@ -34,6 +34,8 @@ pub enum Action {
     Watch(WatchArgs),
     /// Make the frames of a film: the camera moves
     Fly(FlyArgs),
+    /// Check the light transport against what is known on paper; print each number
+    Validate(ValidateArgs),
     /// Serve an editor (Language Server Protocol on standard input and output)
     Lsp(LspArgs),
 }
@@ -197,6 +199,23 @@ pub struct FlyArgs {
     pub manners: Manners,
 }
 
+/// `validate`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory validate\n  understory validate --only sky --seed 7 --json checks.json\n\n\
+                        Small scenes are looked at by the estimators that make the pictures, and the numbers compared with\n\
+                        closed forms: configuration factors, Fresnel's equations, skies, furnaces, lamps.\n\
+                        Exit code 1 if one differs; a right program fails with probability 1e-6."
+)]
+pub struct ValidateArgs {
+    /// Make only the checks whose names begin so
+    #[arg(long, value_name = "NAME")]
+    pub only: Option<String>,
+    /// Write each check with what was found to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+}
+
 /// `lsp`
 #[derive(Debug, Args)]
 #[command(
@@ -218,7 +237,7 @@ pub struct LspArgs {
     after_help = "A file NAME.toml beside NAME.rgg (or the one in the folder) may hold the same options:\n  \
                   steps, seed, and under [camera], [render], [sky], [fly] what --help lists there.\n\
                   Flags win over it, it wins over the preset of --quality.\n\n\
-                  Exit codes: 0 done; 1 the model has errors; 2 usage; 3 the world failed (file, memory) or it was stopped.",
+                  Exit codes: 0 done; 1 the model has errors (or a check of `validate` fails); 2 usage; 3 the world failed (file, memory) or it was stopped.",
     styles = STYLES,
     max_term_width = 110
 )]
@@ -234,12 +253,13 @@ const STYLES: Styles = Styles::styled()
     .placeholder(AnsiColor::Cyan.on_default());
 
 /// The commands with their names.
-const COMMANDS: [(&str, Command); 6] = [
+const COMMANDS: [(&str, Command); 7] = [
     ("check", Command::Check),
     ("derive", Command::Derive),
     ("render", Command::Render),
     ("watch", Command::Watch),
     ("fly", Command::Fly),
+    ("validate", Command::Validate),
     ("lsp", Command::Lsp),
 ];
 
@@ -278,6 +298,7 @@ impl Action {
             Self::Render(_) => Command::Render,
             Self::Watch(_) => Command::Watch,
             Self::Fly(_) => Command::Fly,
+            Self::Validate(_) => Command::Validate,
             Self::Lsp(_) => Command::Lsp,
         }
     }

@@ -6,6 +6,7 @@ pub mod outcome;
 mod shell;
 mod talking;
 pub mod terminal;
+mod validating;
 mod watching;
 
 use crate::integrator::CancelToken;
@@ -39,7 +40,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let (sender, events) = channel();
     listen_for_ctrl_c(cancel.clone(), sender.clone());
     let manners = match &request.action {
-        Action::Check(_) | Action::Lsp(_) => None,
+        Action::Check(_) | Action::Validate(_) | Action::Lsp(_) => None,
         Action::Derive(args) => Some(&args.manners),
         Action::Render(args) => Some(&args.manners),
         Action::Watch(args) => Some(&args.manners),
@@ -52,6 +53,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Render(args) => commands::render(&shell, args),
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
         Action::Fly(args) => commands::fly(&shell, args),
+        Action::Validate(args) => validating::validate(&shell, args),
         Action::Lsp(_) => Ok(()),
     };
     shell.conclude(result).into()

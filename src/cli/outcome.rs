@@ -11,7 +11,7 @@ use std::process::ExitCode;
 pub enum Exit {
     /// All that was asked for is there.
     Done = 0,
-    /// The model has errors.
+    /// The model has errors; or the program itself has, by its own checks.
     Model = 1,
     /// What was asked for makes no sense.
     Usage = 2,
@@ -61,6 +61,12 @@ pub fn show(terminal: &Terminal, failure: &Failure) -> Exit {
         Failure::World(text) => {
             terminal.tell(&format!("error: {text}\n"));
             Exit::World
+        }
+        Failure::Invalid { failed, checks } => {
+            terminal.tell(&format!(
+                "error: {failed} of {checks} checks failed: this build of the program computes light wrongly\n"
+            ));
+            Exit::Model
         }
         Failure::Stopped => {
             terminal.tell("stopped\n");

@@ -39,9 +39,12 @@ impl Shell {
         };
         let output = match request.action.command() {
             Command::Derive => ModelOutput::Standard,
-            Command::Check | Command::Render | Command::Watch | Command::Fly | Command::Lsp => {
-                ModelOutput::Error
-            }
+            Command::Check
+            | Command::Render
+            | Command::Watch
+            | Command::Fly
+            | Command::Validate
+            | Command::Lsp => ModelOutput::Error,
         };
         let terminal = Arc::new(Terminal::new(manner, output, cancel.clone()));
         Self {

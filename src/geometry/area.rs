@@ -1,6 +1,7 @@
 //! Areas of placed round shapes, and points chosen on them.
 
 use super::unit::{UnitFrustum, UnitShape};
+use crate::math::Bounds3;
 use crate::math::functions::sin_cos;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::PI;
@@ -64,6 +65,31 @@ impl RoundArea {
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
+    }
+
+    /// A box that holds it.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds3 {
+        let (low, high) = match self.form {
+            Metric::Sphere => (DVec3::NEG_ONE, DVec3::ONE),
+            Metric::Disk => (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)),
+            Metric::Frustum(frustum) => (
+                DVec3::new(-1.0, -1.0, 0.0),
+                DVec3::new(1.0, 1.0, frustum.aspect),
+            ),
+        };
+        let own = Bounds3 {
+            min: low,
+            max: high,
+        };
+        own.transformed(&self.to_world)
+    }
+
+    /// The unit normal of the front, if it is the same everywhere.
+    #[must_use]
+    pub fn flat_normal(&self) -> Option<DVec3> {
+        let is_flat = matches!(self.form, Metric::Disk);
+        is_flat.then(|| (self.normal_map * DVec3::Z).normalize())
     }
 
     /// A point and the unit normal of the front there; `u` are uniform random numbers in [0, 1).

@@ -11,9 +11,10 @@
 
 use super::medium::{Bodies, left_after};
 use super::mis::power_heuristic;
-use super::sources::{Reach, Shading, Sources};
+use super::sources::{Reach, Shading, Sources, receiver};
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
+use crate::light::Receiver;
 use crate::material::{Density, Optics, ScatterNumbers, ScatteringFrame, Transport};
 use crate::math::Ray;
 use crate::sampler::{Sampler, Use};
@@ -83,7 +84,8 @@ struct PathEstimator<'s> {
 /// The scattering that a ray comes from.
 #[derive(Clone, Copy)]
 struct LastScattering {
-    position: DVec3,
+    /// The point as lamps are chosen for it.
+    from: Receiver,
     /// With which density the ray's direction was chosen.
     density: Density,
     /// Which lights were sampled there.
@@ -193,7 +195,7 @@ impl RadianceEstimator for PathEstimator<'_> {
                 throughput *= 1.0 / survival;
             }
             last = Some(LastScattering {
-                position: point.position,
+                from: receiver(&point, &frame, &optics.scattering, wo),
                 density: scattered.density,
                 reach,
             });
@@ -296,7 +298,7 @@ impl PathEstimator<'_> {
         }
         let weight = self.hit_weight(last, |last| {
             self.sources
-                .emitter_pdf_solid_angle(point, last.position, last.reach)
+                .emitter_pdf_solid_angle(point, &last.from, last.reach)
         });
         emission * weight
     }

@@ -14,6 +14,7 @@ use super::path::Strategies;
 use super::sources::{Reach, Shading, Shadows, Sources};
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
+use crate::light::Receiver;
 use crate::material::{
     LobeKind, Optics, ScatterNumbers, ScatterSample, Scattering, ScatteringFrame, Side, Transport,
     fresnel,
@@ -159,11 +160,15 @@ impl RaytracerEstimator<'_> {
 
     /// Whether light that a surface sends out by itself has not been counted where this ray comes from.
     fn shows_emission(&self, vertex: &Vertex<'_>, branch: &Branch) -> bool {
-        let origin = branch.ray.origin;
+        let from = Receiver {
+            position: branch.ray.origin,
+            normal: None,
+            is_two_sided: true,
+        };
         branch.sees_lights
             || self
                 .sources
-                .emitter_pdf_solid_angle(&vertex.point, origin, Reach::First)
+                .emitter_pdf_solid_angle(&vertex.point, &from, Reach::First)
                 <= 0.0
     }
 

@@ -1,4 +1,8 @@
 //! All light sources of a scene as one: choosing among them, sampling them, and the density with which that is done.
+//!
+//! Up to [`FEW`] sources are all sampled at the first vertex of a path. Of more, and at later vertices, one is chosen by chance:
+//! sky, sun, a parallel light, or all lamps and shining surfaces together; among these a tree chooses by what each can give to
+//! the point ([`LampTree`]).
 
 use super::RayCounts;
 use super::clear_shadow;
@@ -7,7 +11,7 @@ use super::mis::power_heuristic;
 use super::path::Strategies;
 use crate::color::Rgb;
 use crate::light::alias::AliasTable;
-use crate::light::{Dome, Light, LightSample, SunDisk};
+use crate::light::{Dome, LampOutline, LampTree, Light, LightSample, Receiver, SunDisk};
 use crate::material::{Scattering, ScatteringFrame, Transport};
 use crate::math::Ray;
 use crate::sampler::{Sampler, Use};
@@ -76,6 +80,11 @@ impl Shading<'_> {
         scattering.value_cos(self.frame, self.wo, wi, Transport::Radiance)
     }
 
+    /// The point as lamps are chosen for it.
+    fn receiver(&self) -> Receiver {
+        receiver(self.point, self.frame, self.scattering, self.wo)
+    }
+
     /// Density with which scattering finds `wi`.
     fn pdf_solid_angle(&self, wi: DVec3) -> f64 {
         let scattering = self.scattering;
@@ -89,6 +98,21 @@ impl Shading<'_> {
     }
 }
 
+/// A surface point, seen along `wo`, as lamps are chosen for it.
+#[must_use]
+pub fn receiver(
+    point: &SurfacePoint,
+    frame: &ScatteringFrame,
+    scattering: &Scattering<'_>,
+    wo: DVec3,
+) -> Receiver {
+    Receiver {
+        position: point.position,
+        normal: Some(frame.facing_normal(wo)),
+        is_two_sided: scattering.transmits(),
+    }
+}
+
 /// The sources of a scene, ready for sampling.
 #[derive(Debug)]
 pub struct Sources<'s> {
@@ -98,9 +122,20 @@ pub struct Sources<'s> {
     sources: Vec<Source>,
     /// Where the emitters begin in `sources`; they are in the order of the scene.
     first_emitter: usize,
+    tree: Tree,
     first: Selection,
     later: Selection,
     shadows: Shadows,
+}
+
+/// The sources that have a place, to be chosen among by what they can give to a point.
+#[derive(Debug)]
+struct Tree {
+    lamps: LampTree,
+    /// Of each lamp of the tree, the number of the source.
+    sources: Vec<usize>,
+    /// Of each source, the number in the tree, if it is there.
+    places: Vec<Option<usize>>,
 }
 
 /// Which sources are sampled: some always, and one of the others by chance.
@@ -108,6 +143,7 @@ pub struct Sources<'s> {
 struct Selection {
     always: Vec<usize>,
     is_always: Vec<bool>,
+    /// By the number of the source; one more for the tree.
     others: AliasTable,
 }
 
@@ -133,14 +169,16 @@ impl<'s> Sources<'s> {
             let is_everywhere = matches!(sources[index], Source::Sun | Source::Sky);
             weights[index] > 0.0 && (is_everywhere || sources.len() <= FEW)
         };
-        let first = Selection::new(&weights, is_always);
-        let later = Selection::new(&weights, |_| false);
+        let tree = Tree::new(scene, &sources);
+        let first = Selection::new(&weights, &tree, is_always);
+        let later = Selection::new(&weights, &tree, |_| false);
         Self {
             scene,
             dome,
             sun,
             sources,
             first_emitter,
+            tree,
             first,
             later,
             shadows: Shadows::default(),
@@ -172,8 +210,7 @@ impl<'s> Sources<'s> {
         let selection = self.selection(reach);
         let mut radiance = Rgb::BLACK;
         let always = selection.always.iter().map(|index| (*index, 1.0));
-        let chosen = selection.others.sample(sampler.point(Use::Choice).x);
-        let chosen = chosen.map(|index| (index, selection.others.probability(index)));
+        let chosen = self.choose(selection, shading, sampler.point(Use::Choice));
         for (nth, (index, probability)) in (0_u16..).zip(always.chain(chosen)) {
             let u = sampler.point(Use::Light(nth));
             let Some((light, ray)) = self.sample(self.sources[index], shading.point, u) else {
@@ -197,6 +234,27 @@ impl<'s> Sources<'s> {
             }
         }
         radiance
+    }
+
+    /// Chooses one of the sources that are not always sampled, with its probability.
+    ///
+    /// The second number also decides whether the path goes on. That is another term of the same sum, so no mean changes.
+    fn choose(
+        &self,
+        selection: &Selection,
+        shading: &Shading<'_>,
+        u: DVec2,
+    ) -> Option<(usize, f64)> {
+        let index = selection.others.sample(u.x)?;
+        let probability = selection.others.probability(index);
+        if index < self.sources.len() {
+            return Some((index, probability));
+        }
+        let chosen = self.tree.lamps.sample(&shading.receiver(), u.y)?;
+        Some((
+            self.tree.sources[chosen.index],
+            probability * chosen.probability,
+        ))
     }
 
     /// Light of one source at a point, and the ray on which it may be blocked.
@@ -274,36 +332,67 @@ impl<'s> Sources<'s> {
         self.probability_of(Source::Sun, reach) * pdf
     }
 
-    /// Density per steradian, choice of source included, with which sampling lights from `origin` finds the point `at` of
+    /// Density per steradian, choice of source included, with which sampling lights for `from` finds the point `at` of
     /// a shining surface that a ray from there has hit; 0 if that surface is not sampled.
     #[must_use]
-    pub fn emitter_pdf_solid_angle(&self, at: &SurfacePoint, origin: DVec3, reach: Reach) -> f64 {
+    pub fn emitter_pdf_solid_angle(&self, at: &SurfacePoint, from: &Receiver, reach: Reach) -> f64 {
         let emitters = self.scene.emitters();
         let found = emitters.binary_search_by_key(&at.primitive, |emitter| emitter.primitive);
         let Ok(index) = found else { return 0.0 };
-        let pdf = emitters[index].pdf_toward(origin, at.position, at.normal_g);
-        self.selection(reach)
-            .probability(self.first_emitter + index)
-            * pdf
+        let pdf = emitters[index].pdf_toward(from.position, at.position, at.normal_g);
+        let source = self.first_emitter + index;
+        self.selection(reach).probability(&self.tree, source, from) * pdf
     }
 
     /// Probability that sky or sun is sampled.
     fn probability_of(&self, source: Source, reach: Reach) -> f64 {
         let infinite = &self.sources[..self.first_emitter];
         let index = infinite.iter().rposition(|candidate| *candidate == source);
-        index.map_or(0.0, |index| self.selection(reach).probability(index))
+        index.map_or(0.0, |index| self.selection(reach).alone(index))
+    }
+}
+
+impl Tree {
+    fn new(scene: &Scene, sources: &[Source]) -> Self {
+        let outline = |source: &Source| match *source {
+            Source::Lamp(index) => LampOutline::of(&scene.lights()[index]),
+            Source::Sun | Source::Sky => None,
+            Source::Emitter(id) => {
+                let emitter = &scene.emitters()[id.0 as usize];
+                let material = scene.material(emitter.material);
+                let [front, back] = [true, false].map(|side| material.emitted_radiance(side));
+                Some(emitter.outline(front, back))
+            }
+        };
+        let (mut outlines, mut members) = (Vec::new(), Vec::new());
+        let mut places = vec![None; sources.len()];
+        for (index, source) in sources.iter().enumerate() {
+            if let Some(mut outline) = outline(source) {
+                // What is brighter than this is chosen as if it were this bright, so that quotients stay finite.
+                outline.strength = outline.strength.min(BRIGHTEST);
+                places[index] = Some(members.len());
+                members.push(index);
+                outlines.push(outline);
+            }
+        }
+        Self {
+            lamps: LampTree::new(&outlines),
+            sources: members,
+            places,
+        }
     }
 }
 
 impl Selection {
-    fn new(weights: &[f64], is_always: impl Fn(usize) -> bool) -> Self {
+    fn new(weights: &[f64], tree: &Tree, is_always: impl Fn(usize) -> bool) -> Self {
         let is_always: Vec<bool> = (0..weights.len()).map(is_always).collect();
-        let rest = weights
-            .iter()
-            .zip(&is_always)
-            .map(|(w, always)| if *always { 0.0 } else { *w });
+        let mut rest = vec![0.0; weights.len() + 1];
+        for (index, weight) in weights.iter().enumerate() {
+            let place = tree.places[index].map_or(index, |_| weights.len());
+            rest[place] += if is_always[index] { 0.0 } else { *weight };
+        }
         // Weights are finite and not negative, which is all that can be wrong with them.
-        let others = AliasTable::new(&rest.collect::<Vec<_>>()).unwrap_or_default();
+        let others = AliasTable::new(&rest).unwrap_or_default();
         let always = (0..weights.len())
             .filter(|index| is_always[*index])
             .collect();
@@ -314,7 +403,19 @@ impl Selection {
         }
     }
 
-    fn probability(&self, index: usize) -> f64 {
+    /// Probability that a source is sampled for a point.
+    fn probability(&self, tree: &Tree, index: usize, from: &Receiver) -> f64 {
+        match tree.places[index] {
+            Some(place) if !self.is_always[index] => {
+                let any = self.others.probability(self.is_always.len());
+                any * tree.lamps.probability(from, place)
+            }
+            _ => self.alone(index),
+        }
+    }
+
+    /// Probability that a source without a place is sampled.
+    fn alone(&self, index: usize) -> f64 {
         if self.is_always[index] {
             1.0
         } else {

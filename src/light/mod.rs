@@ -8,15 +8,19 @@ mod clear_sky;
 pub mod dome;
 pub mod environment;
 mod lamp;
+pub mod outline;
 pub mod sky_image;
 mod sky_table;
 pub mod sun;
 pub mod sun_position;
+pub mod tree;
 
 pub use dome::Dome;
 pub use environment::{Environment, Sky, SunDisk};
 pub use lamp::LightError;
+pub use outline::{LampOutline, Receiver};
 pub use sky_image::SkyImage;
+pub use tree::LampTree;
 
 use crate::color::Rgb;
 use crate::math::angle::Angle;

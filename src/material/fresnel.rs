@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn glass_and_air_of_the_table() {
-        let table = std::fs::read_to_string("tests/refdata/glass_sheet_fresnel.csv").unwrap();
+        let table = include_str!("../validation/tables/glass_sheet_fresnel.csv");
         let mut n_rows = 0;
         for line in table
             .lines()

@@ -91,7 +91,8 @@ impl ScatteringFrame {
     }
 
     /// The shading normal, turned to the side of `wo`.
-    fn facing_normal(&self, wo: DVec3) -> DVec3 {
+    #[must_use]
+    pub fn facing_normal(&self, wo: DVec3) -> DVec3 {
         if self.is_in_front(wo) {
             self.normal_s
         } else {
@@ -166,6 +167,14 @@ impl Scattering<'_> {
         let has_smooth_lobe = self.lobes.iter().any(|lobe| !lobe.is_delta());
         let is_black = |side: &Side| side.reflectance.is_black() && side.transmittance.is_black();
         has_smooth_lobe || !self.sides.iter().all(is_black)
+    }
+
+    /// Whether light from behind can leave in front, by more than single directions.
+    #[must_use]
+    pub fn transmits(&self) -> bool {
+        let lobes = self.lobes.iter();
+        let blurs = lobes.filter(|lobe| !lobe.is_delta()).any(Lobe::transmits);
+        blurs || !self.sides.iter().all(|side| side.transmittance.is_black())
     }
 
     /// The transparent body that begins behind the surface: its absorption in 1/m, if there is one.

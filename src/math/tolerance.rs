@@ -7,6 +7,25 @@
 /// smaller would give their horizon fewer digits. Used by [`crate::camera`] and [`crate::turtle`].
 pub const PARALLEL_SINE: f64 = 1e-8;
 
+/// How far a number that is exact on paper may be off by rounding in a check of the light transport, relative.
+///
+/// A ray, a hit, a shading and a product are some dozen roundings of 2⁻⁵³, a shadow ray starts about 1e-12 beside its surface.
+/// Ten times larger would still see every fault of a formula; a thousand times smaller would refuse right ones. Used by
+/// [`crate::validation`].
+pub const CLOSED_FORM: f64 = 1e-9;
+
+/// The same where the number on paper is printed with eight decimals.
+///
+/// Half a unit of the last is 2e-8 of the smallest such number. Used by [`crate::validation`].
+pub const PRINTED_DIGITS: f64 = 1e-7;
+
+/// By how much cones of directions are taken wider than they are, in radians and as a cosine.
+///
+/// A lamp must not count as turned away, and so never be chosen, by the rounding of a sum of angles. Ten times larger would
+/// still be invisible; smaller than a few roundings of 2⁻⁵³ under a square root (1e-8) only what gives next to nothing is lost.
+/// Used by [`crate::light`].
+pub const CONE_SLACK: f64 = 1e-8;
+
 /// The angle, in radians, below which a tropism does not turn the turtle: GroIMP's own limit.
 ///
 /// The axis of the turn is a cross product that vanishes with the angle. Ten times larger would change no model that can

@@ -29,11 +29,15 @@ pub enum Command {
     Fly,
     /// Serves an editor.
     Lsp,
+    /// Measures what is known on paper.
+    Validate,
 }
 
-use Command::{Derive, Fly, Render, Watch};
+use Command::{Derive, Fly, Render, Validate, Watch};
 /// Commands that run the model.
 const GROWING: &[Command] = &[Derive, Render, Watch, Fly];
+/// Commands that draw random numbers and work in parallel.
+const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Validate];
 /// Commands that make pictures.
 const PICTURING: &[Command] = &[Render, Watch, Fly];
 
@@ -193,7 +197,7 @@ options! {
     /// How many times the step method runs after `init`
     steps: u32 = "1", "steps", "N", Model, Growth, GROWING;
     /// Seed of all random numbers, of growth and of light
-    seed: i64 = "1", "seed", "N", Model, Growth, GROWING;
+    seed: i64 = "1", "seed", "N", Model, Growth, WORKING;
     /// The step method
     entry: String = "run", "entry", "NAME", Model, Growth, GROWING;
     /// Growth stops with an error at more modules than this
@@ -201,7 +205,7 @@ options! {
     /// Growth and pictures that need more memory than this are refused; `auto`: three quarters of what is free
     max_memory: Option<Bytes> = "auto", "max-memory", "BYTES", Model, Machine, GROWING;
     /// Threads to use; `auto`: one for each core. The result does not depend on it
-    threads: Option<Threads> = "auto", "threads", "N", Model, Machine, GROWING;
+    threads: Option<Threads> = "auto", "threads", "N", Model, Machine, WORKING;
 
     /// Where the camera stands, in metres; `auto`: where all of the model is in view
     eye: Option<DVec3> = "auto", "eye", "X,Y,Z", Camera, View, PICTURING;

@@ -18,6 +18,13 @@ pub enum Failure {
     Usage(String),
     /// A file, memory, the machine.
     World(String),
+    /// The program itself is wrong: numbers known on paper came out otherwise.
+    Invalid {
+        /// How many.
+        failed: usize,
+        /// Of how many.
+        checks: usize,
+    },
     /// It was told to stop; what was finished is kept.
     Stopped,
 }

@@ -8,11 +8,14 @@ use super::error::SceneError;
 use super::group::{Group, ItemKind, ShapeRecord};
 use super::query::Hit;
 use super::subtended::{SeenBall, SeenRectangle};
+use crate::color::Rgb;
 use crate::geometry::area::RoundArea;
 use crate::geometry::unit::UnitShape;
+use crate::light::LampOutline;
 use crate::math::tolerance::{SIMILARITY, SPAWN_SAFETY, gamma};
-use crate::math::{PrimitiveId, Ray};
+use crate::math::{Bounds3, PrimitiveId, Ray};
 use glam::{DAffine3, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How many emitters a scene may have; more are a mistake or need another kind of light source.
 const LIMIT: usize = 1 << 22;
@@ -205,6 +208,49 @@ impl Emitter {
                 SeenBall::new(from, *center, *radius).map_or(Seen::ByArea, Seen::Ball)
             }
             Form::Triangle(..) | Form::Cube(_) | Form::Round(_) => Seen::ByArea,
+        }
+    }
+
+    /// Where it is and where to it shines, its sides with these radiances, W/(m² sr).
+    #[must_use]
+    pub fn outline(&self, front: Rgb, back: Rgb) -> LampOutline {
+        let corners = |corner: DVec3, [u, v]: [DVec3; 2], far: DVec3| {
+            Bounds3::of([corner, corner + u, corner + v, far])
+        };
+        let (bounds, normal) = match &self.form {
+            Form::Triangle(corner, edges, normal) => {
+                (corners(*corner, *edges, *corner), Some(*normal))
+            }
+            Form::Parallelogram(corner, edges, normal) => {
+                let far = *corner + edges[0] + edges[1];
+                (corners(*corner, *edges, far), Some(*normal))
+            }
+            Form::Cube(to_world) => {
+                let unit = Bounds3::of([DVec3::NEG_ONE, DVec3::ONE]);
+                (unit.transformed(to_world), None)
+            }
+            Form::Ball { area, .. } => (area.bounds(), None),
+            Form::Round(area) => (area.bounds(), area.flat_normal()),
+        };
+        let (front, back) = (front.sum(), back.sum());
+        match normal {
+            Some(normal) => LampOutline {
+                bounds,
+                axis: if front > 0.0 { normal } else { -normal },
+                spread: 0.0,
+                emission: FRAC_PI_2,
+                is_two_sided: front > 0.0 && back > 0.0,
+                strength: front.max(back) * self.area,
+            },
+            // What is convex shows a quarter of its area on average, and shines to all sides.
+            None => LampOutline {
+                bounds,
+                axis: DVec3::Z,
+                spread: PI,
+                emission: FRAC_PI_2,
+                is_two_sided: false,
+                strength: 0.25 * (front + back) * self.area,
+            },
         }
     }
 

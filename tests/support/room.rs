@@ -1,69 +1,25 @@
-//! Building small scenes for tests.
+//! Small scenes for tests, by the builder of the validation.
 
-use glam::{DAffine3, DVec3};
+#![allow(unused_imports, reason = "each test binary uses a part of it")]
+
+use glam::DVec3;
 use understory::color::Rgb;
 use understory::geometry::Shape;
-use understory::light::{Environment, Light};
+use understory::light::Environment;
 use understory::material::Material;
 use understory::math::angle::Angle;
 use understory::scene::Scene;
-use understory::scene::description::{
-    Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
-};
+pub(crate) use understory::validation::room::{Room, at, even_sky, gray, square};
 
-/// A scene under construction.
-#[derive(Default)]
-pub(crate) struct Room {
-    description: SceneDescription,
-    group: Group,
+/// Builds what cannot be refused.
+pub(crate) trait Build {
+    fn build(self) -> Scene;
 }
 
-impl Room {
-    pub(crate) fn with(mut self, shape: Shape, to_world: DAffine3, material: Material) -> Self {
-        let number = u32::try_from(self.description.materials.len()).unwrap();
-        self.description.materials.push(material);
-        self.group.shapes.push(PlacedShape {
-            shape,
-            to_group: to_world,
-            material: MaterialId(number),
-            organ: OrganId(0),
-        });
-        self
+impl Build for Room {
+    fn build(self) -> Scene {
+        self.scene().unwrap()
     }
-
-    pub(crate) fn lit_by(mut self, light: Light) -> Self {
-        self.description.lights.push(light);
-        self
-    }
-
-    pub(crate) fn under(mut self, environment: Environment) -> Self {
-        self.description.environment = environment;
-        self
-    }
-
-    pub(crate) fn build(mut self) -> Scene {
-        self.description.groups.push(self.group);
-        self.description.root = Some(GroupId(0));
-        Scene::build(self.description).unwrap()
-    }
-}
-
-pub(crate) fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
-
-/// A horizontal square round the origin that looks up.
-pub(crate) fn square(half: f64) -> Shape {
-    let edge = 2.0 * half;
-    Shape::Parallelogram {
-        corner: DVec3::new(-half, -half, 0.0),
-        edge_u: DVec3::X * edge,
-        edge_v: DVec3::Y * edge,
-    }
-}
-
-pub(crate) fn gray(value: f64) -> Rgb {
-    Rgb::splat(value)
 }
 
 /// A sphere lamp and a bright sky over ground with a ball that shades it, without the sun (which no scattered ray finds).
