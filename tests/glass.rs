@@ -12,7 +12,7 @@ mod statistics;
 mod room;
 
 use glam::DVec3;
-use room::{Build, Room, at, even_sky, gray, square};
+use room::{Room, at, even_sky, gray, square};
 use statistics::{assert_mean, assert_same};
 use understory::color::Rgb;
 use understory::geometry::Shape;

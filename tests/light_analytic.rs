@@ -12,7 +12,7 @@ mod statistics;
 mod room;
 
 use glam::{DAffine3, DVec3};
-use room::{Build, Room, at, even_sky, gray, shaded_ground, square};
+use room::{Room, at, even_sky, gray, shaded_ground, square};
 use statistics::{assert_mean, assert_same};
 use understory::color::Rgb;
 use understory::geometry::Shape;

@@ -7,7 +7,7 @@
 mod room;
 
 use glam::DVec3;
-use room::{Build, Room, at, gray, shaded_ground, square};
+use room::{Room, at, gray, shaded_ground, square};
 use std::f64::consts::FRAC_1_PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;

@@ -205,7 +205,7 @@ pub struct FlyArgs {
     after_help = "Examples:\n  understory validate\n  understory validate --only sky --seed 7 --json checks.json\n\n\
                         Small scenes are looked at by the estimators that make the pictures, and the numbers compared with\n\
                         closed forms: configuration factors, Fresnel's equations, skies, furnaces, lamps.\n\
-                        Exit code 1 if one differs; a right program fails with probability 1e-6."
+                        Exit code 1 if one differs; a right program fails once in a million seeds."
 )]
 pub struct ValidateArgs {
     /// Make only the checks whose names begin so

@@ -2,23 +2,36 @@
 
 #![allow(unused_imports, reason = "each test binary uses a part of it")]
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use understory::color::Rgb;
 use understory::geometry::Shape;
 use understory::light::Environment;
+use understory::light::Light;
 use understory::material::Material;
 use understory::math::angle::Angle;
 use understory::scene::Scene;
-pub(crate) use understory::validation::room::{Room, at, even_sky, gray, square};
+use understory::validation::room;
+pub(crate) use understory::validation::room::{at, even_sky, gray, square};
 
-/// Builds what cannot be refused.
-pub(crate) trait Build {
-    fn build(self) -> Scene;
-}
+/// A scene under construction, of what cannot be refused.
+#[derive(Default)]
+pub(crate) struct Room(room::Room);
 
-impl Build for Room {
-    fn build(self) -> Scene {
-        self.scene().unwrap()
+impl Room {
+    pub(crate) fn with(self, shape: Shape, to_world: DAffine3, material: Material) -> Self {
+        Self(self.0.with(shape, to_world, material))
+    }
+
+    pub(crate) fn lit_by(self, light: Light) -> Self {
+        Self(self.0.lit_by(light))
+    }
+
+    pub(crate) fn under(self, environment: Environment) -> Self {
+        Self(self.0.under(environment))
+    }
+
+    pub(crate) fn build(self) -> Scene {
+        self.0.scene().unwrap()
     }
 }
 
