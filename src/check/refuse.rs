@@ -119,8 +119,17 @@ const TYPES: &[(&[&str], &str)] = &[
         "give a `PolygonMesh` arrays of `float` and `int`, or draw primitives",
     ),
     (
-        &["ImageMap", "Checker", "Laplace3D", "Granite3D"],
-        "use `RGBAShader` or `Phong`",
+        &[
+            "Laplace3D",
+            "Granite3D",
+            "Granite",
+            "Gradient",
+            "BumpMap",
+            "ChannelBlend",
+            "VolumeChecker",
+            "FixedImageAdapter",
+        ],
+        "of patterns there are `ImageMap` (a picture from a file: `image(\"leaf.png\")`) and `Checker`",
     ),
     (
         &["SunSkyLight"],

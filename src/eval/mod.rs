@@ -18,6 +18,7 @@ pub mod machine;
 pub mod map;
 pub mod memory;
 pub mod object;
+pub mod picture;
 pub mod program;
 pub mod random;
 pub mod stack;

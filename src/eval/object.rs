@@ -12,6 +12,7 @@ use super::library::more::Tokens;
 use super::light_model::LightModel;
 use super::map::JavaMap;
 use super::memory::Charge;
+use super::picture::{Paint, Picture, Placement};
 use super::random::JavaRandom;
 use super::text::Text;
 use super::value::{Value, free};
@@ -36,6 +37,10 @@ pub enum Data {
     Color([f64; 3]),
     /// An `RGBAShader`: red, green, blue, alpha.
     Shader([f32; 4]),
+    /// An `ImageMap` or `Checker`.
+    Picture(Box<Picture>),
+    /// An `AffineUVTransformation`.
+    Placement(Placement),
     /// A `Phong` shader.
     Phong(Box<Phong>),
     /// A `Mirror`, `Metal`, `Glass`, `Pane` or `LeafShader`.
@@ -116,16 +121,16 @@ pub struct List {
     pub charge: Charge,
 }
 
-/// What a `Phong` shader was given; linear red, green, blue.
+/// What a `Phong` shader was given.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the names are those of its setters")]
 pub struct Phong {
-    pub diffuse: [f64; 3],
-    pub diffuse_transparency: [f64; 3],
-    pub specular: [f64; 3],
-    pub transparency: [f64; 3],
-    pub emissive: [f64; 3],
-    pub ambient: [f64; 3],
+    pub diffuse: Paint,
+    pub diffuse_transparency: Paint,
+    pub specular: Paint,
+    pub transparency: Paint,
+    pub emissive: Paint,
+    pub ambient: Paint,
     /// Sharpness of the gloss, 0..=1.
     pub shininess: Option<f64>,
     /// Sharpness of what passes, 0..=1.
@@ -160,14 +165,14 @@ pub struct Shaders {
 
 impl Default for Phong {
     fn default() -> Self {
-        let black = [0.0; 3];
+        let black = || Paint::Plain([0.0; 3]);
         Self {
-            diffuse: [0.5; 3],
-            diffuse_transparency: black,
-            specular: black,
-            transparency: black,
-            emissive: black,
-            ambient: black,
+            diffuse: Paint::Plain([0.5; 3]),
+            diffuse_transparency: black(),
+            specular: black(),
+            transparency: black(),
+            emissive: black(),
+            ambient: black(),
             shininess: None,
             transparency_shininess: None,
             is_interpolated: true,
@@ -365,6 +370,7 @@ impl Object {
             Data::Reader(_) | Data::Writer(_) | Data::Freeform(..) => {
                 out.push_str(self.class.name());
             }
+            Data::Picture(_) | Data::Placement(_) => out.push_str(self.class.name()),
             Data::Phong(_) | Data::Light(_) | Data::LightModel(_) | Data::Random(_) => {
                 out.push_str(self.class.name());
             }

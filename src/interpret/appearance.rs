@@ -1,13 +1,15 @@
 //! What the interpreter reads of the shaders and lights that fields of nodes hold.
 
+use super::images::Finder;
 use crate::eval::freeform::Freeform;
 use crate::graph::Payload;
 use crate::material::Material;
 
 /// Objects of the model that say how a surface looks or what a lamp sends out.
 pub trait Appearance: Payload {
-    /// The surface it describes for this purpose, if it is a shader. Its numbers are the model's and may be impossible.
-    fn surface(&self, purpose: Purpose) -> Option<Material>;
+    /// The surface it describes for this purpose, if it is a shader. Its numbers are the model's and may be impossible; pictures
+    /// that are missing are left out, and the finder remembers them.
+    fn surface(&self, purpose: Purpose, pictures: &mut Finder<'_>) -> Option<Material>;
 
     /// The lamp it describes, if it is a light.
     fn lamp(&self) -> Option<Lamp>;

@@ -75,7 +75,7 @@ impl<S: Source> Painter<'_, S> {
         };
         let shape = Shape::Mesh(Arc::clone(&self.curved.meshes[number]));
         let does = Effect::Draw(primitive);
-        let material = self.material_of(node, does, state, &shape, &state.transform);
+        let material = self.material_of(node, does, state, (&shape, &state.transform), place)?;
         let group = match self.curved.groups.get(&(number, material)) {
             Some(group) => *group,
             None => {

@@ -101,6 +101,22 @@ pub(super) fn mesh_file(name: &str, file: &str, why: &str, made: &[Span]) -> Fai
     Box::new(made_at(fault, made))
 }
 
+/// A picture that cannot be drawn.
+pub(super) fn picture(
+    name: &str,
+    file: &str,
+    why: &str,
+    hint: Option<String>,
+    made: &[Span],
+) -> Failure {
+    let message = format!("{name} wears the picture `{file}`, which cannot be used: {why}");
+    let fault = made_at(diagnostic(Severity::Error, "picture", message, None), made);
+    Box::new(match hint {
+        Some(hint) => fault.hint(hint),
+        None => fault,
+    })
+}
+
 /// A curved surface that cannot be drawn.
 pub(super) fn curved(name: &str, why: &str, made: &[Span]) -> Failure {
     let message = format!("{name} cannot be drawn: {why}");

@@ -2,6 +2,7 @@
 
 use super::appearance::{Appearance, Lamp, LampKind, Purpose};
 use super::failure::Failure;
+use super::images::Finder;
 use super::shaders;
 use super::source::{Body, Source};
 use crate::diag::Span;
@@ -55,8 +56,8 @@ impl Source for Sketch<'_> {
 }
 
 impl Appearance for Value {
-    fn surface(&self, purpose: Purpose) -> Option<Material> {
-        shaders::surface(self, purpose)
+    fn surface(&self, purpose: Purpose, pictures: &mut Finder<'_>) -> Option<Material> {
+        shaders::surface(self, purpose, pictures)
     }
 
     fn freeform(&self) -> Option<Freeform> {

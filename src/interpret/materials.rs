@@ -2,10 +2,12 @@
 
 use crate::color::{Rgb, palette};
 use crate::geometry::import::MeshMaterial;
-use crate::material::{Lobe, LobeKind, MAX_LOBES, Material, Reflection};
+use crate::material::texture::{Layer, MAX_PICTURES, Pictures, Texture};
+use crate::material::{Lobe, LobeKind, MAX_LOBES, Material, Reflection, Side};
 use crate::math::tolerance::{ENERGY_EXCESS, SMOOTHEST_ALPHA};
 use crate::scene::description::MaterialId;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// The materials of a scene.
 #[derive(Debug, Default)]
@@ -63,20 +65,35 @@ impl Materials {
     }
 
     /// The material of a part of a mesh file.
-    pub(super) fn of_mesh(&mut self, of: &MeshMaterial) -> MaterialId {
+    ///
+    /// `look` is the picture of its colour and `holes` that of where it is. Metals have its mean colour.
+    pub(super) fn of_mesh(
+        &mut self,
+        of: &MeshMaterial,
+        look: Option<Texture>,
+        holes: Option<Texture>,
+    ) -> (MaterialId, Option<Problem>) {
         let emission = Rgb::from_array(of.emission);
         let color = Rgb::from_array(of.base_color);
-        let mut material = Material::lambert(color);
+        let mean = look.as_ref().map_or(Rgb::WHITE, |look| look.image.mean());
+        let mut material = match look {
+            Some(texture) => in_picture(texture, color),
+            None => Material::lambert(color),
+        };
         if of.metallic > 0.0 {
-            let metal = Material::metal(color, of.roughness);
+            let metal = Material::metal(color * mean, of.roughness);
             material = Material::mixed(&material, &metal, of.metallic);
         }
         if of.transmission > 0.0 {
             let glass = Material::glass(of.ior, of.roughness, Rgb::BLACK);
             material = Material::mixed(&material, &glass, of.transmission);
         }
-        let material = material.with_alpha(of.alpha);
-        self.of(material.emitting(emission, Rgb::BLACK)).0
+        let mut material = material.with_alpha(of.alpha);
+        if let Some(texture) = holes {
+            let pictures = material.pictures.get_or_insert_default();
+            pictures.holes = vec![texture];
+        }
+        self.of(material.emitting(emission, Rgb::BLACK))
     }
 
     /// Whether this material shines.
@@ -91,6 +108,26 @@ impl Materials {
     }
 }
 
+/// A matt surface in the colours of a picture, times one.
+fn in_picture(texture: Texture, color: Rgb) -> Material {
+    let side = Side {
+        reflectance: color,
+        transmittance: Rgb::BLACK,
+    };
+    let layer = Layer {
+        texture,
+        sides: [side; 2],
+    };
+    let pictures = Pictures {
+        layers: vec![layer],
+        holes: vec![],
+    };
+    Material {
+        pictures: Some(Box::new(pictures)),
+        ..Material::matt([Side::default(); 2])
+    }
+}
+
 /// Writes all that a material is.
 fn write_key(material: &Material, key: &mut Vec<u64>) {
     let Material {
@@ -98,6 +135,7 @@ fn write_key(material: &Material, key: &mut Vec<u64>) {
         lobes,
         alpha,
         emission,
+        pictures,
     } = material;
     let mut rgb = |rgb: Rgb| key.extend(rgb.to_array().map(f64::to_bits));
     for side in sides {
@@ -132,6 +170,37 @@ fn write_key(material: &Material, key: &mut Vec<u64>) {
             key.extend(rgb.to_array().map(f64::to_bits));
         }
     }
+    if let Some(pictures) = pictures {
+        // Between lobes and layers, so that neither is taken for the other.
+        key.push(u64::MAX);
+        for layer in &pictures.layers {
+            write_texture(&layer.texture, key);
+            for side in &layer.sides {
+                for rgb in [side.reflectance, side.transmittance] {
+                    key.extend(rgb.to_array().map(f64::to_bits));
+                }
+            }
+        }
+        key.push(pictures.layers.len() as u64);
+        for hole in &pictures.holes {
+            write_texture(hole, key);
+        }
+    }
+}
+
+/// Writes what a picture is. Equal pictures are one, which stays where it is as long as a material has it.
+fn write_texture(texture: &Texture, key: &mut Vec<u64>) {
+    let Texture {
+        image,
+        map,
+        wrap,
+        filter,
+        cutoff,
+    } = texture;
+    key.push(Arc::as_ptr(image) as usize as u64);
+    key.extend(map.to_cols_array().map(f64::to_bits));
+    key.push((wrap[0] as u64) << 16 | (wrap[1] as u64) << 8 | *filter as u64);
+    key.push(cutoff.map_or(u64::MAX, f64::to_bits));
 }
 
 fn of_reflection(reflection: Reflection) -> (u64, f64, Rgb) {
@@ -150,6 +219,9 @@ const NO_INDEX: Problem =
 const NO_NUMBER: Problem = "a shader with a number that is negative or none; 0 is taken";
 const TWO_BODIES: Problem =
     "a mixture of two kinds of `Glass`, of which only the first is drawn; a body has one inside";
+const TOO_MANY_PICTURES: Problem = "a shader of too many pictures; only the first eight are drawn";
+const SHINING_HOLES: Problem =
+    "a shader that shines and whose picture is transparent in places; it shines there, too";
 const TOO_MANY: Problem =
     "a shader of too many glossy and clear parts; only the first four are drawn";
 
@@ -174,6 +246,13 @@ fn make_possible(material: &mut Material) -> Option<Problem> {
     for lobe in &mut material.lobes {
         of_rgb(&mut lobe.weight, &mut fraction);
     }
+    for layer in material.pictures.iter_mut().flat_map(|p| &mut p.layers) {
+        for side in &mut layer.sides {
+            of_rgb(&mut side.reflectance, &mut fraction);
+            of_rgb(&mut side.transmittance, &mut fraction);
+        }
+    }
+    problem = possible_pictures(material).or(problem);
     if material.lobes.len() > MAX_LOBES {
         material.lobes = material.lobes[..MAX_LOBES].into();
         problem = Some(TOO_MANY);
@@ -200,6 +279,23 @@ fn make_possible(material: &mut Material) -> Option<Problem> {
         of_rgb(side, &mut amount);
     }
     scaled_down(material).or(problem)
+}
+
+/// Leaves out the pictures that are too many, and holes in what shines.
+fn possible_pictures(material: &mut Material) -> Option<Problem> {
+    let shines = material.is_emitter();
+    let pictures = material.pictures.as_mut()?;
+    let mut problem = None;
+    if pictures.layers.len().max(pictures.holes.len()) > MAX_PICTURES {
+        pictures.layers.truncate(MAX_PICTURES);
+        pictures.holes.truncate(MAX_PICTURES);
+        problem = Some(TOO_MANY_PICTURES);
+    }
+    if shines && !pictures.holes.is_empty() {
+        pictures.holes.clear();
+        problem = Some(SHINING_HOLES);
+    }
+    problem
 }
 
 fn of_rgb(rgb: &mut Rgb, change: &mut impl FnMut(&mut f64)) {
@@ -262,6 +358,12 @@ fn scaled_down(material: &mut Material) -> Option<Problem> {
         }
         for lobe in &mut material.lobes {
             lobe.weight = lobe.weight / most;
+        }
+        for layer in material.pictures.iter_mut().flat_map(|p| &mut p.layers) {
+            for side in &mut layer.sides {
+                side.reflectance = side.reflectance / most;
+                side.transmittance = side.transmittance / most;
+            }
         }
     }
     (most > 1.0 + ENERGY_EXCESS).then_some(BRIGHTER)

@@ -3,13 +3,18 @@
 use super::appearance::Appearance;
 use super::canvas::Canvas;
 use super::failure::{self, Failure};
+use super::images::Finder;
 use super::shapes::FIELDS;
 use super::source::Source;
 use super::walk::{Painter, Place};
 use crate::eval::files::FileFault;
 use crate::geometry::Shape;
-use crate::geometry::import::{self, MeshFile};
+use crate::geometry::import::{
+    self, MeshFile, MeshHoles, MeshImage, MeshMaterial, MeshPart, MeshTexture, MeshWrap,
+};
 use crate::graph::NodeId;
+use crate::material::image::Coverage;
+use crate::material::texture::{Filter, Texture, Wrap};
 use crate::scene::description::{GroupId, MaterialId, PlacedShape};
 use crate::turtle::TurtleState;
 use std::collections::HashMap;
@@ -20,8 +25,17 @@ use std::rc::Rc;
 pub(super) struct MeshFiles {
     /// By where they are. Looked up only, never iterated.
     read: HashMap<String, Rc<MeshFile>>,
-    /// By where the file is and the shader it is drawn with instead of its own. Looked up only, never iterated.
-    groups: HashMap<(String, Option<MaterialId>), GroupId>,
+    /// By where the file is and what it wears. Looked up only, never iterated.
+    groups: HashMap<(String, Worn), GroupId>,
+}
+
+/// What a mesh from a file wears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Worn {
+    /// The material it is given.
+    material: Option<MaterialId>,
+    /// Whether parts with a material of their own keep that.
+    spares_own: bool,
 }
 
 impl<S: Source> Painter<'_, S> {
@@ -40,13 +54,24 @@ impl<S: Source> Painter<'_, S> {
         };
         let file = self.source.files().place(&name);
         let file = file.map_err(|fault| self.file_fault(node, &name, fault))?;
-        let material = self.shader_material(node);
-        let key = (file, material);
+        let read = self.mesh_file(node, &name, &file, place)?;
+        let mut material = self.shader_material(node, place)?;
+        let is_plain = |part: &MeshPart| part.material.is_none();
+        let has_plain = material.is_none() && read.parts.iter().any(is_plain);
+        if has_plain {
+            // What has no material in the file looks as the turtle does.
+            self.canvas.note_look(state.look);
+            material = Some(self.look_material(state.look, place)?);
+        }
+        let worn = Worn {
+            material,
+            spares_own: has_plain,
+        };
+        let key = (file, worn);
         let group = match self.mesh_files.groups.get(&key) {
             Some(group) => *group,
             None => {
-                let read = self.mesh_file(node, &name, &key.0, place)?;
-                let group = self.draw_parts(&read, material, node, place)?;
+                let group = self.draw_parts(&name, &read, worn, node, place)?;
                 self.mesh_files.groups.insert(key, group);
                 group
             }
@@ -97,17 +122,19 @@ impl<S: Source> Painter<'_, S> {
     /// Draws the parts of a file into a group of their own, with one material or their own ones.
     fn draw_parts(
         &mut self,
+        name: &str,
         file: &MeshFile,
-        material: Option<MaterialId>,
+        worn: Worn,
         node: NodeId,
         place: Place,
     ) -> Result<GroupId, Failure> {
         let outer = std::mem::take(&mut self.canvas);
         let drawn = file.parts.iter().try_for_each(|part| {
             let own = part.material.and_then(|number| file.materials.get(number));
-            let material = match (material, own) {
-                (Some(material), _) => material,
-                (None, Some(own)) => self.materials.of_mesh(own),
+            let material = match (worn.material, own) {
+                (Some(material), None) => material,
+                (Some(material), Some(_)) if !worn.spares_own => material,
+                (_, Some(own)) => self.own_material(name, own, node, place)?,
                 (None, None) => self.materials.grey(),
             };
             let shape = PlacedShape {
@@ -123,6 +150,53 @@ impl<S: Source> Painter<'_, S> {
         Ok(self.add_group(canvas))
     }
 
+    /// The material that a part of a file has there.
+    fn own_material(
+        &mut self,
+        file: &str,
+        own: &MeshMaterial,
+        node: NodeId,
+        place: Place,
+    ) -> Result<MaterialId, Failure> {
+        let folder = file.rfind(['/', '\\']).map_or("", |end| &file[..=end]);
+        let (look, holes) = self.with_pictures(node, place, |_, pictures| {
+            let look_holes = match own.holes {
+                MeshHoles::Alpha | MeshHoles::Below(_) => Coverage::Alpha,
+                MeshHoles::Never | MeshHoles::Image(_) => Coverage::Opaque,
+            };
+            let look = own.look.as_ref();
+            let look = look.and_then(|look| texture(look, folder, look_holes, pictures));
+            let holes = match &own.holes {
+                MeshHoles::Never => None,
+                MeshHoles::Alpha => look.clone(),
+                MeshHoles::Below(cutoff) => look.clone().map(|look| Texture {
+                    cutoff: Some(*cutoff),
+                    ..look
+                }),
+                MeshHoles::Image(image) => texture(image, folder, Coverage::Alpha, pictures)
+                    .filter(|texture| texture.image.has_holes())
+                    .or_else(|| texture(image, folder, Coverage::Bright, pictures)),
+            };
+            (look, holes.filter(|holes| holes.image.has_holes()))
+        })?;
+        if own.metallic > 0.0 && look.is_some() {
+            self.warn(
+                node,
+                "picture-mean",
+                &format!("draws `{file}`, in which a metal has a picture; it has its mean colour"),
+            );
+        }
+        let (material, problem) = self.materials.of_mesh(own, look, holes);
+        if let Some(problem) = problem {
+            self.warn(
+                node,
+                "impossible-shader",
+                &format!("draws `{file}` with {problem}"),
+            );
+        }
+        Ok(material)
+    }
+
     fn file_fault(&self, node: NodeId, name: &str, fault: FileFault) -> Failure {
         let made = self.made(node);
         let text = self.name(node, Place::default());
@@ -133,4 +207,33 @@ impl<S: Source> Painter<'_, S> {
             FileFault::Refused { message, hint } => failure::file_refused(message, hint, made),
         }
     }
+}
+
+/// A texture of a mesh file in `folder`.
+fn texture(
+    of: &MeshTexture,
+    folder: &str,
+    coverage: Coverage,
+    pictures: &mut Finder<'_>,
+) -> Option<Texture> {
+    let image = match &of.image {
+        MeshImage::File(name) => pictures.beside_mesh(&format!("{folder}{name}"), coverage),
+        MeshImage::Content(bytes) => pictures.content(bytes, coverage),
+    }?;
+    let filter = if of.is_nearest {
+        Filter::Nearest
+    } else {
+        Filter::Bilinear
+    };
+    let wrap = of.wrap.map(|wrap| match wrap {
+        MeshWrap::Repeat => Wrap::Repeat,
+        MeshWrap::Clamp => Wrap::Clamp,
+        MeshWrap::Mirror => Wrap::Mirror,
+    });
+    Some(Texture {
+        map: of.map,
+        wrap,
+        filter,
+        ..Texture::new(image)
+    })
 }

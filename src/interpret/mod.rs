@@ -12,6 +12,7 @@
 //!   meshes      meshes from files
 //!   curved      curved surfaces and meshes that the model describes
 //!   surfaces    shader, colour or lamp of a node
+//!   images      pictures from files
 //!   materials   shaders and colours → materials, each once
 //!   lamps       lights → sources, emission
 //!   blame       which node is at fault, and where it was made
@@ -30,6 +31,7 @@ mod curved;
 mod failure;
 mod grid;
 mod grown;
+mod images;
 mod instance;
 mod lamps;
 mod materials;
@@ -44,6 +46,7 @@ mod walk;
 
 pub use appearance::{Appearance, Lamp, LampKind, Purpose};
 pub use failure::{Failure, explain};
+pub use images::Finder;
 pub use organs::{Organ, Organs};
 pub use sensors::Sensor;
 pub use source::{Body, Source};

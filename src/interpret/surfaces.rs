@@ -26,17 +26,15 @@ impl<S: Source> Painter<'_, S> {
         node: NodeId,
         does: Effect,
         state: &TurtleState,
-        shape: &Shape,
-        to_group: &DAffine3,
-    ) -> MaterialId {
+        (shape, to_group): (&Shape, &DAffine3),
+        place: Place,
+    ) -> Result<MaterialId, Failure> {
         let graph = self.source.graph();
         let (dressed, index) = match state.look {
-            Look::Of(dressed) => (dressed, shoot_color(graph, node, state)),
-            Look::Ega(index) => (node, Some(index)),
-            Look::Grey => (node, None),
+            Look::Of(dressed) => (Some(dressed), shoot_color(graph, node, state)),
+            Look::Ega(index) => (None, Some(index)),
+            Look::Grey => (None, None),
         };
-        let shader = graph.peek_object(dressed, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose));
         let lamp = match does {
             Effect::Draw(Primitive::Parallelogram) => {
                 let light = graph.peek_object(node, FIELDS.area_light).ok().flatten();
@@ -45,39 +43,64 @@ impl<S: Source> Painter<'_, S> {
             _ => None,
         };
         if let Some(lamp) = lamp {
-            return self.shining_material(node, &lamp, surface, shape, to_group);
+            let surface = self.surface_of(dressed.unwrap_or(node), place)?;
+            return Ok(self.shining_material(node, &lamp, surface, shape, to_group));
         }
-        let dressed = match state.look {
-            Look::Of(dressed) => self.shader_material(dressed),
-            Look::Ega(_) | Look::Grey => None,
+        let dressed = match dressed {
+            Some(dressed) => self.shader_material(dressed, place)?,
+            None => None,
         };
-        match (dressed, index) {
+        Ok(match (dressed, index) {
             (Some(material), _) => material,
             (None, Some(index)) => self.materials.ega(index),
             (None, None) => self.materials.grey(),
-        }
+        })
+    }
+
+    /// The surface of the shader that a node has of its own, if it has one.
+    fn surface_of(&mut self, node: NodeId, place: Place) -> Result<Option<Material>, Failure> {
+        let purpose = self.limits.purpose;
+        self.with_pictures(node, place, |source, pictures| {
+            let shader = source.graph().peek_object(node, FIELDS.shader);
+            shader.ok().flatten()?.surface(purpose, pictures)
+        })
     }
 
     /// The material of the shader that a node has of its own, if it has one.
-    pub(super) fn shader_material(&mut self, node: NodeId) -> Option<MaterialId> {
-        let graph = self.source.graph();
-        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose))?;
+    pub(super) fn shader_material(
+        &mut self,
+        node: NodeId,
+        place: Place,
+    ) -> Result<Option<MaterialId>, Failure> {
+        let Some(surface) = self.surface_of(node, place)? else {
+            return Ok(None);
+        };
         let (material, problem) = self.materials.of(surface);
         if let Some(problem) = problem {
             self.warn(node, "impossible-shader", &format!("has {problem}"));
         }
-        Some(material)
+        Ok(Some(material))
+    }
+
+    /// The material of what has no look of its own where the turtle looks so.
+    pub(super) fn look_material(
+        &mut self,
+        look: Look,
+        place: Place,
+    ) -> Result<MaterialId, Failure> {
+        let material = match look {
+            Look::Grey => None,
+            Look::Ega(index) => Some(self.materials.ega(index)),
+            Look::Of(node) => self.shader_material(node, place)?,
+        };
+        Ok(material.unwrap_or_else(|| self.materials.grey()))
     }
 
     /// A number that is equal for looks that give the same material.
     pub(super) fn look_number(&mut self, look: Look) -> u64 {
-        let material = match look {
-            Look::Grey => None,
-            Look::Ega(index) => Some(self.materials.ega(index)),
-            Look::Of(node) => self.shader_material(node),
-        };
-        u64::from(material.unwrap_or_else(|| self.materials.grey()).0)
+        // What is wrong with a look is told where something is drawn with it.
+        let material = self.look_material(look, Place::default());
+        u64::from(material.unwrap_or_else(|_| self.materials.grey()).0)
     }
 
     /// The material of a parallelogram with a lamp of its own. A lamp without a shader shines white.
@@ -104,7 +127,7 @@ impl<S: Source> Painter<'_, S> {
             ),
         }
         let filter = surface.as_ref();
-        let filter = filter.map_or(Rgb::WHITE, |surface| surface.sides[0].reflectance);
+        let filter = filter.map_or(Rgb::WHITE, |surface| surface.mean_sides()[0].reflectance);
         let surface = surface.unwrap_or_default();
         let radiance = if is_possible(lamp) {
             emission(
@@ -139,13 +162,18 @@ impl<S: Source> Painter<'_, S> {
     }
 
     /// Adds the light of a sky of its own power and of the colour of its own shader.
-    pub(super) fn draw_sky(&mut self, node: NodeId, state: &TurtleState) -> Result<(), Failure> {
+    pub(super) fn draw_sky(
+        &mut self,
+        node: NodeId,
+        state: &TurtleState,
+        place: Place,
+    ) -> Result<(), Failure> {
+        let surface = self.surface_of(node, place)?;
+        let color = surface.map(|surface| surface.mean_sides()[0].reflectance);
         let graph = self.source.graph();
-        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose));
         let lamp = Lamp {
             kind: LampKind::Sky,
-            color: surface.map_or([1.0; 3], |surface| surface.sides[0].reflectance.to_array()),
+            color: color.map_or([1.0; 3], Rgb::to_array),
             power: graph.get_f64(node, FIELDS.sky_power).unwrap_or(0.0),
         };
         self.draw_lamp(node, &lamp, state)

@@ -51,7 +51,7 @@ impl Payload for Object {
 }
 
 impl Appearance for Object {
-    fn surface(&self, _: Purpose) -> Option<Material> {
+    fn surface(&self, _: Purpose, _: &mut Finder<'_>) -> Option<Material> {
         match self {
             Self::Surface([back, through], alpha) => {
                 Some(Material::leaf(*back, *through).with_alpha(*alpha))

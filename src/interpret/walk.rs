@@ -4,6 +4,7 @@ use super::body::Prototypes;
 use super::canvas::{About, Canvas};
 use super::curved::CurvedShapes;
 use super::failure::{self, Failure};
+use super::images::Images;
 use super::instance::Instances;
 use super::materials::Materials;
 use super::meshes::MeshFiles;
@@ -56,6 +57,7 @@ pub(super) struct Painter<'s, S: Source> {
     pub(super) prototypes: Prototypes,
     pub(super) instances: Instances,
     pub(super) mesh_files: MeshFiles,
+    pub(super) images: Images,
     pub(super) curved: CurvedShapes,
     n_nodes: u64,
     body_nodes: u64,
@@ -88,6 +90,7 @@ impl<'s, S: Source> Painter<'s, S> {
             prototypes: Prototypes::default(),
             instances: Instances::default(),
             mesh_files: MeshFiles::default(),
+            images: Images::default(),
             curved: CurvedShapes::default(),
             n_nodes: 0,
             body_nodes: 0,
@@ -274,7 +277,7 @@ impl<'s, S: Source> Painter<'s, S> {
     ) -> Result<(), Failure> {
         match does {
             Effect::Draw(Primitive::Light) => self.draw_light_node(node, state),
-            Effect::Draw(Primitive::Sky) => self.draw_sky(node, state),
+            Effect::Draw(Primitive::Sky) => self.draw_sky(node, state, place),
             Effect::Draw(Primitive::Sensor) => self.draw_sensor(node, state, place),
             Effect::Draw(Primitive::Mesh) => self.draw_mesh(node, state, place),
             Effect::Draw(
@@ -329,7 +332,7 @@ impl<'s, S: Source> Painter<'s, S> {
         if !self.has_extent(node, &to_group) {
             return Ok(());
         }
-        let material = self.material_of(node, does, state, &shape, &to_group);
+        let material = self.material_of(node, does, state, (&shape, &to_group), place)?;
         let organ = self.organ(node, place);
         let placed = PlacedShape {
             shape,

@@ -47,6 +47,12 @@ classes! {
     ChannelMap, "A value over a surface: a colour or a gray tone.";
     RGBColor: ChannelMap, "A colour, linear red, green, blue in 0..=1.";
     Graytone: ChannelMap, "A gray tone.";
+    SurfaceMap: ChannelMap, "A picture over a surface.";
+    ImageMap: SurfaceMap, "A picture from a PNG or JPEG file. Where it is transparent, the surface has holes.";
+    ImageRef: ImageMap, "A picture by its name.";
+    Checker: SurfaceMap, "Two by two fields of two colours, and so on.";
+    UVTransformation: ChannelMap, "How a picture lies on a surface.";
+    AffineUVTransformation: UVTransformation, "How a picture lies on a surface: moved, turned, scaled and slanted.";
     Shader, "What a surface looks like.";
     RGBAShader: Shader, "A matt (Lambertian) surface of one colour; the fraction 1 - alpha passes straight through.";
     Phong: Shader, "A surface with matt, glossy and transmitting parts, which add up.";
@@ -123,7 +129,7 @@ classes! {
     BufferedWriter: Writer, "A text file that is written.";
     PrintWriter: Writer, "A text file that is written.";
     View3D, "A window; there is none.";
-    ShaderRef: Shader, "A shader of a GroIMP project, by name; gray.";
+    ShaderRef: Shader, "A matt surface with a picture, by its name.";
     AlgorithmSwitchShader: Shader, "One shader for pictures, another for light models.";
     SideSwitchShader: Shader, "One shader for each side of a surface.";
     FluxLightModel: LightModel, "A light model; the same one, with the names of GroIMP's other one.";

@@ -11,6 +11,7 @@ use super::signature::{Index, index, signatures};
 use super::{ClassId, Effect, Signature, ValueType};
 
 const SHADER: ValueType = Class(ClassId::Shader);
+const MAP: ValueType = Class(ClassId::ChannelMap);
 
 signatures! {
     /// A constructor of a library class: one per overload.
@@ -40,7 +41,14 @@ signatures! {
     Pane = "Pane"."new"() -> Void, Pure, "", "Clear, index of refraction 1.5.";
     PaneOf = "Pane"."new"(Double ior) -> Void, Pure, "", "Clear, with an index of refraction.";
     Leaf = "LeafShader"."new"(Double red, Double green, Double blue, Double redThrough, Double greenThrough, Double blueThrough) -> Void, Pure, "0..=1", "From the parts of red, green, blue that are scattered back and those that are scattered through.";
-    LeafColors = "LeafShader"."new"(Class(ClassId::RGBColor) reflectance, Class(ClassId::RGBColor) transmittance) -> Void, Pure, "", "From what is scattered back and what is scattered through.";
+    LeafColors = "LeafShader"."new"(MAP reflectance, MAP transmittance) -> Void, Pure, "", "From what is scattered back and what is scattered through: colours or pictures.";
+    LeafLook = "LeafShader"."new"(MAP look, Double through) -> Void, Pure, "0..=1", "From a colour or picture of the light that a leaf does not swallow, and the part of that light that it scatters through.";
+    ImageMap = "ImageMap"."new"() -> Void, Pure, "", "Half gray, until `setImageAdapter`.";
+    ImageMapOf = "ImageMap"."new"(String file) -> Void, Pure, "", "From a PNG or JPEG file, by its name relative to the folder of the model.";
+    Checker = "Checker"."new"() -> Void, Pure, "", "White and black.";
+    CheckerOf = "Checker"."new"(MAP first, MAP second) -> Void, Pure, "", "Of two colours.";
+    Placement = "AffineUVTransformation"."new"() -> Void, Pure, "", "As the texture coordinates are.";
+    ShaderNamed = "ShaderRef"."new"(String name) -> Void, Pure, "", "As `shader(name)`.";
     Mix = "MixShader"."new"(SHADER first, SHADER second, Double share) -> Void, Pure, "0..=1", "The share of the second, and the rest of the first.";
     PointLight = "PointLight"."new"() -> Void, Pure, "", "White, 100 W.";
     SpotLight = "SpotLight"."new"() -> Void, Pure, "", "White, 100 W.";
@@ -146,7 +154,6 @@ pub fn constructors_of(class: ClassId) -> &'static [ConstructorId] {
         ClassId::Set,
         ClassId::Reader,
         ClassId::Writer,
-        ClassId::ShaderRef,
         ClassId::VertexList,
         ClassId::BSplineCurve,
         ClassId::BSplineSurface,

@@ -51,7 +51,8 @@ signatures! {
 
     Chart = ""."chart"(Class(ClassId::Dataset) table, Int kind) -> Void, Prints, "", "Draws a table: `XY_PLOT`, `SCATTER_PLOT`, `BAR_PLOT`.";
     ChartNamed = ""."chart"(Class(ClassId::Dataset) table, Int kind, String title) -> Void, Prints, "", "Draws a table.";
-    ShaderNamed = ""."shader"(String name) -> Class(ClassId::ShaderRef), Pure, "", "A shader of a GroIMP project; gray here.";
+    ShaderNamed = ""."shader"(String name) -> Class(ClassId::ShaderRef), Pure, "", "A matt surface with a picture: with a name such as `leaf.png` that file, relative to the folder of the model; with one such as `leaf`, as in GroIMP, `leaf.png`, `leaf.jpg` or `leaf.jpeg` there or in `images` or `textures`, and gray without such a file.";
+    ImageNamed = ""."image"(String name) -> Class(ClassId::ImageRef), Pure, "", "A picture, by a name as in `shader`: `new Phong().(setDiffuse(image(\"leaf.png\")))`.";
     Export3d = ""."export3DScene"(String path, String format) -> Void, Prints, "", "Nothing: export with `understory export`.";
     Snapshot = ""."makeSnapshot"(String path) -> Void, Prints, "", "Nothing: make pictures with `understory render`.";
     SnapshotSized = ""."makeSnapshot"(String path, Int width, Int height) -> Void, Prints, "", "Nothing: make pictures with `understory render`.";

@@ -14,14 +14,17 @@
 //! fresnel     smooth boundaries and sheets      microfacet  GGX
 //! lobe        the lobes as data                 specular    what each does
 //! scattering  all parts of a surface together   presets     mirror, glass, metal, ...
+//! image       pictures as data                  texture     how they lie on surfaces
 //! ```
 
 pub mod fresnel;
+pub mod image;
 mod lobe;
 mod microfacet;
 mod presets;
 mod scattering;
 mod specular;
+pub mod texture;
 
 pub use lobe::{Lobe, LobeKind, LobeSides, MAX_LOBES, Reflection};
 pub use scattering::{
@@ -30,6 +33,7 @@ pub use scattering::{
 
 use crate::color::Rgb;
 use crate::math::tolerance::ENERGY_EXCESS;
+use texture::{MAX_PICTURES, Pictures};
 
 /// The optical properties of a surface, per side.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +47,8 @@ pub struct Material {
     pub alpha: f64,
     /// Emitted radiance of the front and the back side, W/(m² sr) per channel, the same in all directions.
     pub emission: [Rgb; 2],
+    /// The pictures on it, which add to the matt part and cut holes.
+    pub pictures: Option<Box<Pictures>>,
 }
 
 /// What a surface does to light at one point.
@@ -119,10 +125,12 @@ impl Material {
             lobes: Box::default(),
             alpha: 1.0,
             emission: [Rgb::BLACK; 2],
+            pictures: None,
         }
     }
 
-    /// What it does to light where nothing varies over the surface.
+    /// What it does to light beside its pictures: what does not vary over the surface.
+    #[inline]
     #[must_use]
     pub fn optics(&self) -> Optics<'_> {
         Optics {
@@ -132,7 +140,7 @@ impl Material {
         }
     }
 
-    /// How it scatters where nothing varies over the surface.
+    /// How it scatters beside its pictures.
     #[must_use]
     pub fn scattering(&self) -> Scattering<'_> {
         Scattering {
@@ -163,7 +171,7 @@ impl Material {
     /// Whether no light goes straight through.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
-        self.optics().is_opaque()
+        self.optics().is_opaque() && !self.has_holes()
     }
 
     /// The same material, of which only the fraction `alpha` (0..=1) is there.
@@ -193,7 +201,7 @@ impl Material {
     }
 
     /// Fraction per channel of the light falling on the given side (`true`: the front) that stays in the surface for certain;
-    /// exact for matt surfaces, mirrors, glass and panes.
+    /// exact for matt surfaces without pictures, mirrors, glass and panes.
     #[must_use]
     pub fn absorptance(&self, is_front: bool) -> Rgb {
         let rest = Rgb::WHITE - self.claim(is_front);
@@ -201,10 +209,10 @@ impl Material {
     }
 
     /// The share of the light arriving on a side (`true`: the front) that all parts together are given; more than 1 is
-    /// impossible. Alpha is not counted.
+    /// impossible. Alpha is not counted, and pictures with their largest values.
     #[must_use]
     pub fn claim(&self, is_front: bool) -> Rgb {
-        let side = self.sides[usize::from(!is_front)];
+        let side = self.most_sides()[usize::from(!is_front)];
         let lobes = self.lobes.iter();
         let lobes = lobes.filter(|lobe| lobe.sides.include(is_front));
         let matt = side.reflectance + side.transmittance;
@@ -226,6 +234,7 @@ impl Material {
             }
         }
         self.validate_lobes()?;
+        self.validate_pictures()?;
         for (name, side) in ["front", "back"].into_iter().zip(&self.sides) {
             side.validate(name)?;
         }
@@ -234,6 +243,25 @@ impl Material {
             if sum > 1.0 + ENERGY_EXCESS {
                 return Err(MaterialError::MakesLight { side, sum });
             }
+        }
+        Ok(())
+    }
+
+    fn validate_pictures(&self) -> Result<(), MaterialError> {
+        let Some(pictures) = &self.pictures else {
+            return Ok(());
+        };
+        let most = pictures.layers.len().max(pictures.holes.len());
+        if most > MAX_PICTURES {
+            return Err(MaterialError::TooManyPictures(most));
+        }
+        for layer in &pictures.layers {
+            for (name, side) in ["front", "back"].into_iter().zip(&layer.sides) {
+                side.validate_parts(name)?;
+            }
+        }
+        if self.has_holes() && self.is_emitter() {
+            return Err(MaterialError::ShiningHoles);
         }
         Ok(())
     }
@@ -282,6 +310,12 @@ pub enum MaterialError {
     /// More lobes than there is room for.
     #[error("{0} lobes, of which at most 4 are possible")]
     TooManyLobes(usize),
+    /// More pictures than there is room for.
+    #[error("{0} pictures, of which at most {MAX_PICTURES} are possible")]
+    TooManyPictures(usize),
+    /// Pictures cut holes in what shines: no light is sampled well there.
+    #[error("holes in a shining surface")]
+    ShiningHoles,
     /// Two transparent bodies behind one surface.
     #[error("two transparent bodies behind one surface")]
     TwoBodies,

@@ -1,6 +1,7 @@
 //! Surfaces by their everyday names.
 
 use super::lobe::{Lobe, LobeKind, LobeSides, Reflection};
+use super::texture::Pictures;
 use super::{Material, Side};
 use crate::color::Rgb;
 use crate::math::tolerance::SMOOTHEST_ALPHA;
@@ -80,7 +81,7 @@ impl Material {
     ///
     /// What goes through in single directions or straight on must pass both: if the two differ in that, nothing does. The
     /// larger alpha counts, so that light sees the same holes from both sides. Too many lobes are an error of
-    /// [`validate`](Self::validate).
+    /// [`validate`](Self::validate). Holes that pictures cut in one are holes of both.
     #[must_use]
     pub fn two_sided(front: &Self, back: &Self) -> Self {
         let alpha = front.alpha.max(back.alpha);
@@ -121,10 +122,11 @@ impl Material {
             lobes: lobes.into(),
             alpha,
             emission: [front.emission[0] * of_front, back.emission[1] * of_back],
+            pictures: Pictures::joined([(front, [of_front, 0.0]), (back, [0.0, of_back])]),
         }
     }
 
-    /// The fraction `share` (0..=1) of `b` and the rest of `a`, mixed finely.
+    /// The fraction `share` (0..=1) of `b` and the rest of `a`, mixed finely. Holes that pictures cut in one are holes of both.
     #[must_use]
     pub fn mixed(a: &Self, b: &Self, share: f64) -> Self {
         let alpha = a.alpha * (1.0 - share) + b.alpha * share;
@@ -151,6 +153,7 @@ impl Material {
             lobes: lobes.into(),
             alpha,
             emission: [0, 1].map(|at| a.emission[at] * of_a + b.emission[at] * of_b),
+            pictures: Pictures::joined([(a, [of_a; 2]), (b, [of_b; 2])]),
         }
     }
 }

@@ -127,7 +127,18 @@ impl Side {
         (total > 0.0).then(|| reflected.sum() / total)
     }
 
+    /// Checks that both parts are fractions, and together no more than 1.
     pub(super) fn validate(&self, side: &'static str) -> Result<(), MaterialError> {
+        self.validate_parts(side)?;
+        let sum = (self.reflectance + self.transmittance).max_channel();
+        if sum > 1.0 + ENERGY_EXCESS {
+            return Err(MaterialError::MakesLight { side, sum });
+        }
+        Ok(())
+    }
+
+    /// Checks that each part is a fraction.
+    pub(super) fn validate_parts(&self, side: &'static str) -> Result<(), MaterialError> {
         for (quantity, rgb) in [
             ("reflectance", self.reflectance),
             ("transmittance", self.transmittance),
@@ -139,10 +150,6 @@ impl Side {
                     value,
                 });
             }
-        }
-        let sum = (self.reflectance + self.transmittance).max_channel();
-        if sum > 1.0 + ENERGY_EXCESS {
-            return Err(MaterialError::MakesLight { side, sum });
         }
         Ok(())
     }

@@ -221,16 +221,16 @@ impl Scene {
     #[inline]
     #[must_use]
     pub fn optics(&self, point: &SurfacePoint) -> Optics<'_> {
-        self.material(point.material).optics()
+        self.material(point.material).optics_at(point.uv)
     }
 
     /// The fraction of light on `ray` that goes straight through the surface at `hit`, which has this material.
     fn passage(&self, ray: &Ray, hit: &Hit, id: MaterialId) -> Rgb {
         let material = self.material(id);
-        if material.is_matt() {
+        if material.is_matt() && !material.has_holes() {
             return Rgb::splat(1.0 - material.alpha);
         }
-        // How much a pane lets through depends on the angle.
+        // How much a pane lets through depends on the angle, and holes have their places.
         let point = self.surface(ray, hit);
         self.optics(&point)
             .passage(point.normal_g.dot(ray.direction))

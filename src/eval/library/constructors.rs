@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::{
     Arguments, Context, Maker, buffers, collections, data, files, freeform, light, light_models,
-    lists, matrices, moments, more, new_object, random, shaders, strings, surfaces, vectors,
+    lists, matrices, moments, more, new_object, pictures, random, shaders, strings, surfaces, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;
@@ -34,6 +34,11 @@ pub fn constructor(id: C) -> Maker {
         C::Glass | C::GlassOf | C::Pane | C::PaneOf => surfaces::make_clear,
         C::Leaf => surfaces::make_leaf,
         C::LeafColors => surfaces::make_leaf_of_colors,
+        C::LeafLook => surfaces::make_leaf_of_look,
+        C::ImageMap | C::ImageMapOf => pictures::make_image,
+        C::Checker | C::CheckerOf => pictures::make_checker,
+        C::Placement => pictures::make_placement,
+        C::ShaderNamed => pictures::make_shader,
         C::Mix => surfaces::make_mix,
         C::PointLight | C::SpotLight | C::AreaLight => light::make_lamp,
         C::DirectionalLight => light::make_directional,

@@ -5,7 +5,7 @@ use super::Behaviour::{
     Native,
 };
 use super::{
-    arrays, data, exact, format, moments, numbers, ordering, places, precise, random, shaders,
+    arrays, data, exact, format, moments, numbers, ordering, pictures, places, precise, random,
     strings, system, values,
 };
 use crate::library::FunctionId as F;
@@ -40,7 +40,8 @@ pub fn function(id: F) -> Behaviour {
         F::DistancePoints => Native(places::distance_of_points),
         F::AngleNode => Native(places::angle),
         F::Chart | F::ChartNamed => Native(data::chart),
-        F::ShaderNamed => Native(shaders::named),
+        F::ShaderNamed => Native(pictures::named_shader),
+        F::ImageNamed => Native(pictures::named),
         F::Export3d
         | F::Snapshot
         | F::SnapshotSized

@@ -3,7 +3,7 @@
 use super::Behaviour::{self, Native};
 use super::{
     Arguments, Context, arrays, buffers, collections, data, deques, files, freeform, getter, keyed,
-    light, light_models, lists, matrices, moments, more, numbers, ordering, random, setter,
+    light, light_models, lists, matrices, moments, more, numbers, ordering, pictures, random, setter,
     shaders, strings, surfaces, system, values, vectors,
 };
 use crate::eval::object::Data;
@@ -146,6 +146,20 @@ pub fn method(id: M) -> Behaviour {
         M::ShaderSetGreen => |cx, args| set(cx, args, M::ShaderSetGreen),
         M::ShaderSetBlue => |cx, args| set(cx, args, M::ShaderSetBlue),
         M::ShaderSetAlpha => |cx, args| set(cx, args, M::ShaderSetAlpha),
+        M::SurfaceMapSetInput => pictures::set_input,
+        M::SurfaceMapSetRepeat => pictures::set_repeat,
+        M::SurfaceMapSetOffset => pictures::set_offset,
+        M::SurfaceMapSetTurn => pictures::set_turn,
+        M::ImageMapSetImageAdapter | M::ImageMapSetImage => pictures::set_image,
+        M::ImageMapSetFilter => pictures::set_filter,
+        M::CheckerSetColor1 => pictures::set_color1,
+        M::CheckerSetColor2 => pictures::set_color2,
+        M::PlacementSetOffsetU => pictures::set_offset_u,
+        M::PlacementSetOffsetV => pictures::set_offset_v,
+        M::PlacementSetScaleU => pictures::set_scale_u,
+        M::PlacementSetScaleV => pictures::set_scale_v,
+        M::PlacementSetAngle => pictures::set_angle,
+        M::PlacementSetShear => pictures::set_shear,
         M::PhongSetDiffuse => shaders::set_diffuse,
         M::PhongSetSpecular => shaders::set_specular,
         M::PhongSetShininess => shaders::set_shininess_map,

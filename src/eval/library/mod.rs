@@ -26,6 +26,7 @@ mod lists;
 mod methods;
 pub mod more;
 mod numbers;
+mod pictures;
 mod places;
 mod precise;
 mod random;

@@ -1,8 +1,9 @@
 //! Shaders and the colour maps they are made of.
 
-use super::{Arguments, Context, new_object};
+use super::{Arguments, Context, new_object, pictures};
 use crate::color::Rgb;
 use crate::eval::object::{Data, Phong};
+use crate::eval::picture::Paint;
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
 use crate::library::ClassId;
@@ -16,11 +17,6 @@ pub(super) fn opaque(color: Rgb) -> Value {
 /// What surfaces without a shader look like.
 pub(super) fn half_gray() -> Value {
     new_object(ClassId::RGBAShader, Data::Shader([0.5, 0.5, 0.5, 1.0]))
-}
-
-/// `shader("name")`: the project's shaders are not read, so that it is gray.
-pub(super) fn named(_: &mut Context<'_>, _: &[Value]) -> Result<Value, Trap> {
-    Ok(half_gray())
 }
 
 pub(super) fn make_gray(_: &mut Context<'_>, _: ClassId, _: &[Value]) -> Result<Value, Trap> {
@@ -166,7 +162,7 @@ pub(super) fn set_alpha(data: &mut Data, value: &Value) {
     set_component(data, 3, value);
 }
 
-/// Colour as `0xAARRGGBB`.
+/// Colour as `0xAARRGGBB`; of a picture, which is not read yet, half gray.
 pub(super) fn average_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Value, Trap> {
     let shader = match &*cx.object(args, 0)?.lock() {
         Data::Shaders(pair) => Some(pair.first.clone()),
@@ -178,8 +174,12 @@ pub(super) fn average_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Valu
     let rgba = match &*cx.object(args, 0)?.lock() {
         Data::Shader(c) => c.map(f64::from),
         Data::Phong(p) => {
-            let [r, g, b] = p.diffuse;
-            let through: f64 = p.transparency.iter().sum();
+            let plain = |paint: &Paint, else_: f64| match paint {
+                Paint::Plain(color) => *color,
+                Paint::Picture(_) => [else_; 3],
+            };
+            let [r, g, b] = plain(&p.diffuse, 0.5);
+            let through: f64 = plain(&p.transparency, 0.0).iter().sum();
             [r, g, b, 1.0 - through / 3.0]
         }
         _ => [0.5, 0.5, 0.5, 1.0],
@@ -192,14 +192,13 @@ pub(super) fn average_color(cx: &mut Context<'_>, args: &[Value]) -> Result<Valu
 fn set_channel(
     cx: &Context<'_>,
     args: &[Value],
-    channel: fn(&mut Phong) -> &mut [f64; 3],
+    channel: fn(&mut Phong) -> &mut Paint,
 ) -> Result<Value, Trap> {
-    let color = match &*cx.object(args, 1)?.lock() {
-        Data::Color(c) => *c,
-        _ => return Ok(Value::Null),
+    let Some(paint) = pictures::paint(cx, args, 1)? else {
+        return Ok(Value::Null);
     };
     if let Data::Phong(phong) = &mut *cx.object(args, 0)?.lock() {
-        *channel(phong) = color;
+        *channel(phong) = paint;
     }
     Ok(Value::Null)
 }
@@ -235,6 +234,11 @@ pub(super) fn set_emissive(cx: &mut Context<'_>, args: &[Value]) -> Result<Value
 fn mean(cx: &Context<'_>, args: &[Value]) -> Result<Option<f64>, Trap> {
     Ok(match &*cx.object(args, 1)?.lock() {
         Data::Color(c) => Some(c.iter().sum::<f64>() / 3.0),
+        Data::Picture(_) => {
+            let message =
+                "a picture cannot say how sharp a gloss is: give a number or a `Graytone`";
+            return Err(cx.exception(ClassId::UnsupportedOperationException, message));
+        }
         _ => None,
     })
 }

@@ -1,7 +1,8 @@
 //! Shaders with everyday names: mirrors, metals, glass, panes, leaves, and two shaders in one.
 
-use super::{Arguments, Context, new_object};
-use crate::eval::object::{Data, Finish, Shaders};
+use super::{Arguments, Context, new_object, pictures};
+use crate::eval::object::{Data, Finish, Phong, Shaders};
+use crate::eval::picture::Paint;
 use crate::eval::trap::Trap;
 use crate::eval::value::Value;
 use crate::library::ClassId;
@@ -98,20 +99,39 @@ pub(super) fn make_leaf_of_colors(
     class: ClassId,
     args: &[Value],
 ) -> Result<Value, Trap> {
-    let mut colors = [[0.0; 3]; 2];
-    for (i, color) in colors.iter_mut().enumerate() {
-        if let Data::Color(given) = &*cx.object(args, i)?.lock() {
-            *color = *given;
-        }
-    }
-    let [color, through] = colors;
-    made(
+    let of = |index| {
+        let paint = pictures::paint(cx, args, index)?;
+        Ok::<_, Trap>(paint.unwrap_or(Paint::Plain([0.0; 3])))
+    };
+    Ok(leaf(class, of(0)?, of(1)?))
+}
+
+/// From what a leaf looks like, and which part of that light it scatters through.
+pub(super) fn make_leaf_of_look(
+    cx: &mut Context<'_>,
+    class: ClassId,
+    args: &[Value],
+) -> Result<Value, Trap> {
+    let through = args.double(1);
+    let times = |paint: &Paint, factor: f64| match paint {
+        Paint::Plain(color) => Paint::Plain(color.map(|part| part * factor)),
+        Paint::Picture(picture) => Paint::Picture(picture.times(factor).into()),
+    };
+    let look = pictures::paint(cx, args, 0)?.unwrap_or(Paint::Plain([0.0; 3]));
+    Ok(leaf(
         class,
-        Finish {
-            through,
-            ..finish(class, color)
-        },
-    )
+        times(&look, 1.0 - through),
+        times(&look, through),
+    ))
+}
+
+fn leaf(class: ClassId, diffuse: Paint, diffuse_transparency: Paint) -> Value {
+    let phong = Phong {
+        diffuse,
+        diffuse_transparency,
+        ..Phong::default()
+    };
+    new_object(class, Data::Phong(Box::new(phong)))
 }
 
 pub(super) fn make_mix(_: &mut Context<'_>, class: ClassId, args: &[Value]) -> Result<Value, Trap> {

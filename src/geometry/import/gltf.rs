@@ -5,12 +5,14 @@
 
 use super::accessor::Document;
 use super::buffers;
-use super::material::{MeshImage, MeshMaterial};
+use super::material::{MeshHoles, MeshImage, MeshMaterial, MeshTexture, MeshWrap};
 use super::{FindBeside, ImportError, MeshFile, MeshPart, Room, TriangleMesh, is_sound};
+use crate::math::functions::sin_cos;
 use crate::math::tolerance::SINGULAR_DETERMINANT;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
+use glam::{DAffine2, DAffine3, DMat2, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use gltf_json::accessor::Type;
 use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Node, Root, material};
 use std::collections::BTreeMap;
@@ -292,19 +294,21 @@ impl Reader {
         let pbr = &of.pbr_metallic_roughness;
         let [r, g, b, alpha] = pbr.base_color_factor.0.map(f64::from);
         let cutoff = of.alpha_cutoff.map_or(0.5, |cutoff| f64::from(cutoff.0));
-        let alpha = match of.alpha_mode {
-            Checked::Valid(material::AlphaMode::Blend) => alpha,
-            Checked::Valid(material::AlphaMode::Mask) if alpha < cutoff => 0.0,
-            _ => 1.0,
+        let (alpha, holes) = match of.alpha_mode {
+            Checked::Valid(material::AlphaMode::Blend) => (alpha, MeshHoles::Alpha),
+            Checked::Valid(material::AlphaMode::Mask) if alpha < cutoff => (0.0, MeshHoles::Never),
+            // The image's alpha is multiplied with the factor before it is compared.
+            Checked::Valid(material::AlphaMode::Mask) => (1.0, MeshHoles::Below(cutoff / alpha)),
+            _ => (1.0, MeshHoles::Never),
         };
         let extensions = of.extensions.clone().unwrap_or_default();
         let strength = extensions
             .emissive_strength
             .map_or(1.0, |e| f64::from(e.emissive_strength.0));
-        let image = pbr
+        let look = pbr
             .base_color_texture
             .as_ref()
-            .map(|info| self.image(info))
+            .map(|info| self.texture(info))
             .transpose()?
             .flatten();
         Ok(MeshMaterial {
@@ -318,13 +322,45 @@ impl Reader {
                 .transmission
                 .map_or(0.0, |t| f64::from(t.transmission_factor.0)),
             ior: extensions.ior.map_or(1.5, |ior| f64::from(ior.ior.0)),
-            image,
+            look,
+            holes,
         }
         .tidied())
     }
 
+    /// A texture; none if its image is of a kind that is not read.
+    fn texture(&self, info: &Info) -> Result<Option<MeshTexture>, ImportError> {
+        let Some(image) = self.image(info)? else {
+            return Ok(None);
+        };
+        let root = &self.document.root;
+        let sampler = root.get(info.index).and_then(|texture| texture.sampler);
+        let sampler = sampler.and_then(|sampler| root.get(sampler));
+        let wrap = |of: fn(&Sampler) -> Checked<WrappingMode>| match sampler.map(of) {
+            Some(Checked::Valid(WrappingMode::ClampToEdge)) => MeshWrap::Clamp,
+            Some(Checked::Valid(WrappingMode::MirroredRepeat)) => MeshWrap::Mirror,
+            _ => MeshWrap::Repeat,
+        };
+        let filter = sampler.and_then(|sampler| sampler.mag_filter);
+        let map = transform(info);
+        if !map.is_finite() {
+            return Err(ImportError::Broken(
+                "an image of it is moved or turned by what is no number".to_owned(),
+            ));
+        }
+        Ok(Some(MeshTexture {
+            image,
+            map,
+            wrap: [
+                wrap(|sampler| sampler.wrap_s),
+                wrap(|sampler| sampler.wrap_t),
+            ],
+            is_nearest: filter == Some(Checked::Valid(MagFilter::Nearest)),
+        }))
+    }
+
     /// The image of a texture; none if it is of a kind that is not read.
-    fn image(&self, info: &gltf_json::texture::Info) -> Result<Option<MeshImage>, ImportError> {
+    fn image(&self, info: &Info) -> Result<Option<MeshImage>, ImportError> {
         let root = &self.document.root;
         let image = root
             .get(info.index)
@@ -341,6 +377,27 @@ impl Reader {
             (None, None) => None,
         })
     }
+}
+
+/// How a texture lies (`KHR_texture_transform`): moved after it is turned after it is scaled, in coordinates whose v runs
+/// down; ours runs up.
+fn transform(info: &Info) -> DAffine2 {
+    let extensions = info.extensions.clone().unwrap_or_default();
+    let Some(of) = extensions.texture_transform else {
+        return DAffine2::IDENTITY;
+    };
+    let vector = |v: [f32; 2]| DVec2::new(f64::from(v[0]), f64::from(v[1]));
+    let (sin, cos) = sin_cos(f64::from(of.rotation.0));
+    let turn = DMat2::from_cols(DVec2::new(cos, -sin), DVec2::new(sin, cos));
+    let map = DAffine2 {
+        matrix2: turn * DMat2::from_diagonal(vector(of.scale.0)),
+        translation: vector(of.offset.0),
+    };
+    let over = DAffine2 {
+        matrix2: DMat2::from_diagonal(DVec2::new(1.0, -1.0)),
+        translation: DVec2::Y,
+    };
+    over * map * over
 }
 
 /// From a node to its parent.

@@ -1,5 +1,6 @@
 //! What files of meshes say about surfaces.
 
+use glam::DAffine2;
 use std::sync::Arc;
 
 /// A surface as a file of meshes describes it: the metallic-roughness model of glTF. Numbers are finite and within their
@@ -23,7 +24,61 @@ pub struct MeshMaterial {
     /// Index of refraction, at least 1.
     pub ior: f64,
     /// The image that is multiplied with the base colour, if there is one.
-    pub image: Option<MeshImage>,
+    pub look: Option<MeshTexture>,
+    /// What of the image, or of another one, cuts holes.
+    pub holes: MeshHoles,
+}
+
+/// An image and how it lies on a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshTexture {
+    /// The image.
+    pub image: MeshImage,
+    /// From the texture coordinates of the mesh to those of the image.
+    pub map: DAffine2,
+    /// How it goes on beyond its edges: along u, along v.
+    pub wrap: [MeshWrap; 2],
+    /// Whether what is between its pixels is the nearest of them.
+    pub is_nearest: bool,
+}
+
+/// How an image goes on beyond its edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MeshWrap {
+    /// Again and again.
+    #[default]
+    Repeat,
+    /// With the colour of its edge.
+    Clamp,
+    /// Again and again, each time turned over.
+    Mirror,
+}
+
+/// What cuts holes in a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum MeshHoles {
+    /// Nothing.
+    Never,
+    /// The alpha of the image of its colour.
+    #[default]
+    Alpha,
+    /// That alpha: below this, it is a hole, from it on, there is none.
+    Below(f64),
+    /// Another image: its alpha if that varies, its brightness otherwise.
+    Image(MeshTexture),
+}
+
+impl MeshTexture {
+    /// An image as it is, repeated.
+    #[must_use]
+    pub fn new(image: MeshImage) -> Self {
+        Self {
+            image,
+            map: DAffine2::IDENTITY,
+            wrap: [MeshWrap::Repeat; 2],
+            is_nearest: false,
+        }
+    }
 }
 
 /// An image that a material names.
@@ -47,7 +102,8 @@ impl Default for MeshMaterial {
             roughness: 1.0,
             transmission: 0.0,
             ior: 1.5,
-            image: None,
+            look: None,
+            holes: MeshHoles::Alpha,
         }
     }
 }

@@ -18,7 +18,7 @@ mod material;
 mod mtl;
 mod obj;
 
-pub use material::{MeshImage, MeshMaterial};
+pub use material::{MeshHoles, MeshImage, MeshMaterial, MeshTexture, MeshWrap};
 
 use super::TriangleMesh;
 use crate::math::tolerance::MAX_COORDINATE;

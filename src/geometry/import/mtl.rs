@@ -1,12 +1,13 @@
 //! Wavefront material libraries.
 //!
 //! `Kd` becomes the base colour, `d` (or 1 - `Tr`) alpha, `Ke` emission, `Ni` the index of refraction, `Pr` and `Pm` roughness
-//! and metalness, `map_Kd` the image. Without `Pr`, roughness follows from the exponent `Ns` of a surface that has a gloss
+//! and metalness, `map_Kd` the image, whose alpha cuts holes unless `map_d` names another. Without `Pr`, roughness follows from the exponent `Ns` of a surface that has a gloss
 //! (`Ks`); without `Pm`, a mirror (`illum` 3, 5, 8) without a matt part is a metal. The rest is not looked at.
 
 use super::ImportError;
-use super::material::{MeshImage, MeshMaterial};
+use super::material::{MeshHoles, MeshImage, MeshMaterial, MeshTexture, MeshWrap};
 use super::obj::{Line, lines};
+use glam::{DAffine2, DVec2};
 
 /// What a library says of one material, as far as it says anything.
 #[derive(Default)]
@@ -53,19 +54,51 @@ fn read_line(line: &Line<'_>, entry: &mut Entry) -> Result<(), ImportError> {
         "Pr" => entry.roughness = Some(line.numbers::<1>()?[0]),
         "Pm" => entry.metallic = Some(line.numbers::<1>()?[0]),
         "illum" => entry.model = Some(line.numbers::<1>()?[0]),
-        // Options such as `-s 2 2 1` stand in front of the name, which may hold spaces: take the last word behind options.
-        "map_Kd" => {
-            let name = if line.rest.starts_with('-') {
-                line.rest.split_whitespace().last()
-            } else {
-                Some(line.rest)
-            };
-            let name = name.filter(|name| !name.is_empty());
-            rest.image = name.map(|name| MeshImage::File(name.replace('\\', "/")));
-        }
+        "map_Kd" => rest.look = texture(line)?,
+        "map_d" => rest.holes = texture(line)?.map_or(MeshHoles::Alpha, MeshHoles::Image),
         _ => {}
     }
     Ok(())
+}
+
+/// An image with the options in front of its name: `-s u v w` repeats it, `-o u v w` moves it, `-clamp on` ends it at its
+/// edges. Other options, which end at the next word with a `-` or with the last word, are not looked at.
+fn texture(line: &Line<'_>) -> Result<Option<MeshTexture>, ImportError> {
+    let mut words = line.rest.split_whitespace().peekable();
+    let (mut scale, mut offset, mut wrap) = (DVec2::ONE, DVec2::ZERO, MeshWrap::Repeat);
+    let mut name = line.rest;
+    if line.rest.starts_with('-') {
+        name = line.rest.split_whitespace().last().unwrap_or_default();
+    }
+    while let Some(option) = words.next_if(|word| word.starts_with('-')) {
+        let mut numbers = vec![];
+        while let Some(Ok(number)) = words.peek().map(|word| word.parse::<f64>()) {
+            numbers.push(number);
+            words.next();
+        }
+        let of = |default: f64| {
+            let at = |i: usize| numbers.get(i).copied().unwrap_or(default);
+            DVec2::new(at(0), at(1))
+        };
+        match option {
+            "-s" => scale = of(1.0),
+            "-o" => offset = of(0.0),
+            "-clamp" if words.next() == Some("on") => wrap = MeshWrap::Clamp,
+            _ if numbers.is_empty() => {
+                words.next();
+            }
+            _ => {}
+        }
+    }
+    if !(scale.is_finite() && offset.is_finite()) {
+        return Err(line.wrong("a picture is repeated or moved by what is no number"));
+    }
+    let image = MeshImage::File(name.replace('\\', "/"));
+    Ok((!name.is_empty()).then(|| MeshTexture {
+        map: DAffine2::from_scale_angle_translation(scale, 0.0, offset),
+        wrap: [wrap; 2],
+        ..MeshTexture::new(image)
+    }))
 }
 
 /// Three numbers, or one for all three. Spectra and CIE colours are not read.
@@ -121,7 +154,9 @@ mod tests {
         assert_eq!((moss.name.as_str(), moss.alpha), ("moss", 0.5));
         assert_eq!(moss.base_color, [0.1, 0.4, 0.05]);
         assert_eq!(moss.emission, [0.0, 2.0, 0.0]);
-        assert_eq!(moss.image, Some(MeshImage::File("img/moss.png".into())));
+        let look = moss.look.as_ref().unwrap();
+        assert_eq!(look.image, MeshImage::File("img/moss.png".into()));
+        assert_eq!(look.map.transform_point2(DVec2::ONE), DVec2::new(2.0, 2.0));
         assert_eq!((chrome.base_color, chrome.metallic), ([0.9, 0.8, 0.7], 1.0));
         assert_eq!((chrome.roughness, moss.roughness), (0.0, 1.0));
         assert_eq!((paint.alpha, paint.metallic), (0.75, 0.5));
