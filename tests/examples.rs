@@ -80,6 +80,90 @@ fn a_still_life_of_meshes_and_curved_shapes() {
     assert_shows_something("meshes/still.rgg", &drawn.image);
 }
 
+/// How bright a picture is, and how much of that differs from pixel to pixel.
+fn looks(name: &str, image: &LinearImage) -> (f64, f64) {
+    let luminances: Vec<f64> = image.pixels.iter().map(|pixel| pixel.luminance()).collect();
+    assert!(luminances.iter().all(|l| l.is_finite()), "{name}");
+    let n = luminances.len() as f64;
+    let mean = luminances.iter().sum::<f64>() / n;
+    let variance = luminances.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / n;
+    (mean, variance.sqrt() / mean)
+}
+
+/// The nine scenes of the study and the four of the peers, with both renderers: light arrives, something is seen, and what the
+/// ray tracer sees of it, which leaves light out but adds none, is no brighter than what the path tracer sees.
+#[test]
+fn the_study_and_the_peers_are_rendered_both_ways() {
+    let study = [
+        "ring",
+        "cornell",
+        "concave_mirror",
+        "four_lights",
+        "three_columns",
+        "half_open_door",
+        "two_spheres",
+        "three_cubes",
+        "complex_room",
+    ];
+    let study = study.map(|name| format!("study/{name}.rgg"));
+    let peers = [1, 2, 3, 4].map(|n| format!("peers/S{n}.rgg"));
+    for name in study.iter().chain(&peers) {
+        let shot = |renderer| {
+            let flags = [
+                ("renderer", renderer),
+                ("size", "32x28"),
+                ("supersampling", "2"),
+            ];
+            looks(name, &example(name, &flags).draw().image)
+        };
+        let (traced, followed) = (shot("raytracer"), shot("path"));
+        for (renderer, (mean, contrast)) in [("raytracer", traced), ("path", followed)] {
+            assert!(mean > 0.0, "{name}, {renderer}: black");
+            assert!(contrast > 0.2, "{name}, {renderer}: contrast {contrast}");
+        }
+        assert!(
+            traced.0 < 1.5 * followed.0,
+            "{name}: {traced:?} {followed:?}"
+        );
+    }
+}
+
+#[test]
+fn all_scenes_of_the_study_are_tested() {
+    let files = std::fs::read_dir("examples/study").unwrap();
+    let paths = files.map(|entry| entry.unwrap().path());
+    let is_model = |path: &PathBuf| path.extension().is_some_and(|e| e == "rgg");
+    assert_eq!(paths.filter(is_model).count(), 9);
+}
+
+/// Leaves that are pictures with holes: green where there is a leaf, and the ground is seen between the teeth.
+#[test]
+fn a_twig_of_cut_out_leaves() {
+    let flags = [("size", "48x32"), ("samples", "4"), ("steps", "9")];
+    let drawn = example("textures/lime.rgg", &flags).draw();
+    assert_shows_something("textures/lime.rgg", &drawn.image);
+}
+
+/// The bytes of a textured picture do not depend on the number of threads.
+#[test]
+fn textured_pictures_are_the_same_for_any_number_of_threads() {
+    let shot = |threads: usize| {
+        let flags = [
+            ("size", "40x32"),
+            ("supersampling", "2"),
+            ("renderer", "path"),
+        ];
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        let drawn = pool.install(|| example("study/complex_room.rgg", &flags).draw());
+        let twig = [("size", "40x32"), ("samples", "2"), ("steps", "5")];
+        let twig = pool.install(|| example("textures/lime.rgg", &twig).draw());
+        [drawn.image.pixels, twig.image.pixels].concat()
+    };
+    let one = shot(1);
+    assert!(shot(3) == one && shot(8) == one);
+}
+
 #[test]
 fn the_poplar_has_thousands_of_leaves() {
     let counts = example("poplar.rgg", &[]).grow().counts();

@@ -286,10 +286,6 @@ fn idle(id: FunctionId) -> Option<(&'static str, &'static str)> {
             "writes nothing",
             "`understory derive --json FILE` tells what a graph holds",
         )),
-        FunctionId::ShaderNamed => Some((
-            "gives a gray shader: the shaders of GroIMP projects are not read",
-            "write `new RGBAShader(red, green, blue)` or a `Phong`",
-        )),
         _ => None,
     }
 }

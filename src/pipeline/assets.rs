@@ -1,11 +1,13 @@
 //! The files of meshes and images that the texts of a model name: they are part of what a run depends on.
 //!
 //! What counts are names in quotes, `"rock.obj"`, as they stand in the text, relative to the folder of the model's first file,
-//! and the files that commonly belong to them (`rock.mtl`, `rock.bin`). A name that is put together while the model runs is
-//! not found; the model then has to be saved for `watch` to see the change.
+//! the files that commonly belong to them (`rock.mtl`, `rock.bin`), and the pictures that those name. Behind `shader(` and
+//! `image(` a name may lack its suffix. A name that is put together while the model runs is not found; the model then has to be
+//! saved for `watch` to see the change.
 
 use super::content_hash::ContentHash;
 use super::world::{Entry, World, folder_of};
+use crate::eval::picture::candidates;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -19,20 +21,65 @@ pub fn contents<'t>(
     texts: impl IntoIterator<Item = &'t str>,
 ) -> BTreeMap<PathBuf, ContentHash> {
     let folder = folder_of(model);
-    let mut found = BTreeMap::new();
-    for name in texts.into_iter().flat_map(named) {
-        let path = folder.join(name.replace('\\', "/"));
-        let beside = ["mtl", "bin"].map(|suffix| path.with_extension(suffix));
-        for path in [path].into_iter().chain(beside) {
-            if found.contains_key(&path) || world.entry(&path) != Entry::File {
-                continue;
-            }
-            if let Ok(content) = world.read(&path) {
-                found.insert(path, ContentHash::of([&content[..]]));
+    let mut found = Found {
+        world,
+        files: BTreeMap::new(),
+    };
+    for text in texts {
+        for name in named(text) {
+            found.mesh_or_picture(&folder.join(slashes(name)));
+        }
+        for name in called(text).flat_map(candidates) {
+            found.add(&folder.join(slashes(&name)));
+        }
+    }
+    found.files
+}
+
+/// What was found so far.
+struct Found<'w> {
+    world: &'w dyn World,
+    files: BTreeMap<PathBuf, ContentHash>,
+}
+
+impl Found<'_> {
+    /// Adds a file; gives its content if it is there and was not known.
+    fn add(&mut self, path: &Path) -> Option<Vec<u8>> {
+        if self.files.contains_key(path) || self.world.entry(path) != Entry::File {
+            return None;
+        }
+        let content = self.world.read(path).ok()?;
+        self.files
+            .insert(path.to_owned(), ContentHash::of([&content[..]]));
+        Some(content)
+    }
+
+    /// Adds a file with what belongs to it.
+    fn mesh_or_picture(&mut self, path: &Path) {
+        let document = self.add(path).filter(|_| has_suffix(path, "gltf"));
+        let library = self.add(&path.with_extension("mtl"));
+        self.add(&path.with_extension("bin"));
+        let folder = folder_of(path).to_owned();
+        for content in [document, library].into_iter().flatten() {
+            let text = String::from_utf8_lossy(&content);
+            let words = text.lines().filter_map(|line| {
+                let is_map = line.trim_start().starts_with("map_");
+                is_map.then(|| line.split_whitespace().last()).flatten()
+            });
+            for name in words.chain(named(&text)) {
+                self.add(&folder.join(slashes(name)));
             }
         }
     }
-    found
+}
+
+fn slashes(name: &str) -> String {
+    name.replace('\\', "/")
+}
+
+fn has_suffix(path: &Path, suffix: &str) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case(suffix))
 }
 
 /// What stands in quotes in a text and ends like the name of such a file.
@@ -44,6 +91,15 @@ fn named(text: &str) -> impl Iterator<Item = &str> {
         let suffix = name.rsplit_once('.').map_or("", |(_, suffix)| suffix);
         SUFFIXES.contains(&suffix.to_ascii_lowercase().as_str())
     })
+}
+
+/// What stands in quotes as the name of a shader or image.
+fn called(text: &str) -> impl Iterator<Item = &str> {
+    ["shader(", "image(", "ShaderRef(", "ImageMap("]
+        .into_iter()
+        .flat_map(move |call| text.split(call).skip(1))
+        .filter_map(|rest| rest.trim_start().strip_prefix('"')?.split_once('"'))
+        .map(|(name, _)| name)
 }
 
 #[cfg(test)]
@@ -72,5 +128,23 @@ mod tests {
         let changed = contents(&world, Path::new("m/a.rgg"), [text]);
         let differs = |name: &str| changed[Path::new(name)] != found[Path::new(name)];
         assert!(differs("m/s/rock.mtl") && !differs("m/s/rock.obj"));
+    }
+
+    #[test]
+    fn pictures_are_found_by_their_short_names_and_in_materials() {
+        let world = FakeWorld::default();
+        for file in ["m/a.rgg", "m/leaf.jpg", "m/images/bark.png", "m/s/moss.png"] {
+            world.put(file, file);
+        }
+        world.put("m/s/rock.obj", "");
+        world.put("m/s/rock.mtl", "newmtl a\n map_Kd -s 2 2 1 moss.png\n");
+        let text = "setShader(shader(\"leaf\")) image( \"bark\") Mesh(\"s/rock.obj\")";
+        let found = contents(&world, Path::new("m/a.rgg"), [text]);
+        let names: Vec<&str> = found.keys().map(|path| path.to_str().unwrap()).collect();
+        let expected = ["m/images/bark.png", "m/leaf.jpg", "m/s/moss.png"];
+        assert!(
+            expected.iter().all(|name| names.contains(name)),
+            "{names:?}"
+        );
     }
 }
