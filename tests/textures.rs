@@ -364,7 +364,7 @@ fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
         Growth::new(&model, GrowthOptions::default(), ignore, Box::new(|| false)).unwrap();
     growth.set_files(Box::new(files));
     growth.init().unwrap();
-    interpret(&mut growth, Limits::default())
+    interpret(&mut growth.sketch(), Limits::default())
 }
 
 /// The materials of what is drawn, without complaints.
@@ -498,13 +498,19 @@ fn a_mesh_without_materials_looks_as_the_turtle_does() {
         all.last().unwrap().sides[0].reflectance.to_array()
     };
     assert_eq!(color("Mesh(\"plain.obj\")"), [0.5; 3]);
-    assert_eq!(color("P(4) Mesh(\"plain.obj\")"), color("P(4) F(1)"));
+    let ega = color("P(4) F(1)");
+    assert_eq!(color("P(4) F(1) Mesh(\"plain.obj\")"), ega);
+    assert_eq!(
+        color("[F(1).(setShader(RED)) Mesh(\"plain.obj\")]"),
+        [1.0, 0.0, 0.0]
+    );
     assert_eq!(
         color("Mesh(\"plain.obj\").(setShader(RED))"),
         [1.0, 0.0, 0.0]
     );
     // Two looks, two groups; the file's own materials are not touched.
-    let drawn = draw("Mesh(\"plain.obj\") P(4) Mesh(\"plain.obj\") Mesh(\"m/rock.obj\")").unwrap();
+    let drawn =
+        draw("Mesh(\"plain.obj\") P(4) F(1) Mesh(\"plain.obj\") Mesh(\"m/rock.obj\")").unwrap();
     assert_eq!(drawn.scene.materials.len(), 3);
 }
 
@@ -532,6 +538,6 @@ fn what_is_wrong_with_a_picture_is_told() {
     assert_eq!(drawn.scene.materials[0].sides[0].reflectance, gray(0.5));
     let [warning] = drawn.warnings.sorted().try_into().unwrap();
     assert!(warning.message.contains("`nobark`"), "{}", warning.message);
-    let drawn = draw("F(1).(setShader(new Phong().(setSpecular(image(\"leaf.png\")))))").unwrap();
+    let drawn = draw("F(1).(setShader(new Phong().(setDiffuse(new Graytone(0)), setSpecular(image(\"leaf.png\")))))").unwrap();
     assert_eq!(drawn.warnings.sorted().len(), 1);
 }

@@ -1,6 +1,6 @@
 //! `SensorNode`: discs that measure the light that passes them, and change nothing about it.
 
-use super::appearance::{Appearance, Purpose};
+use super::appearance::Purpose;
 use super::failure::Failure;
 use super::shapes::FIELDS;
 use super::source::Source;
@@ -47,9 +47,8 @@ impl<S: Source> Painter<'_, S> {
         let is_two_sided = graph
             .get_bool(node, FIELDS.sensor_two_sided)
             .unwrap_or(false);
-        let shader = graph.peek_object(node, FIELDS.shader).ok().flatten();
-        let surface = shader.and_then(|shader| shader.surface(self.limits.purpose));
-        let color = surface.map_or(Rgb::WHITE, |surface| surface.sides[0].reflectance);
+        let surface = self.surface_of(node, place)?;
+        let color = surface.map_or(Rgb::WHITE, |surface| surface.mean_sides()[0].reflectance);
         if !state.transform.is_finite() || !radius.is_finite() || !exponent.is_finite() {
             return Err(self.not_finite(node, place));
         }

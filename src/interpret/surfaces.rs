@@ -58,7 +58,11 @@ impl<S: Source> Painter<'_, S> {
     }
 
     /// The surface of the shader that a node has of its own, if it has one.
-    fn surface_of(&mut self, node: NodeId, place: Place) -> Result<Option<Material>, Failure> {
+    pub(super) fn surface_of(
+        &mut self,
+        node: NodeId,
+        place: Place,
+    ) -> Result<Option<Material>, Failure> {
         let purpose = self.limits.purpose;
         self.with_pictures(node, place, |source, pictures| {
             let shader = source.graph().peek_object(node, FIELDS.shader);

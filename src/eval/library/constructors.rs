@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use super::{
     Arguments, Context, Maker, buffers, collections, data, files, freeform, light, light_models,
-    lists, matrices, moments, more, new_object, pictures, random, shaders, strings, surfaces, vectors,
+    lists, matrices, moments, more, new_object, pictures, random, shaders, strings, surfaces,
+    vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::text::Text;

@@ -3,8 +3,8 @@
 use super::Behaviour::{self, Native};
 use super::{
     Arguments, Context, arrays, buffers, collections, data, deques, files, freeform, getter, keyed,
-    light, light_models, lists, matrices, moments, more, numbers, ordering, pictures, random, setter,
-    shaders, strings, surfaces, system, values, vectors,
+    light, light_models, lists, matrices, moments, more, numbers, ordering, pictures, random,
+    setter, shaders, strings, surfaces, system, values, vectors,
 };
 use crate::eval::object::Data;
 use crate::eval::trap::{Trap, describe};
