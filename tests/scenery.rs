@@ -78,10 +78,6 @@ fn calls_that_do_nothing_here_warn() {
         ("makeSnapshot(\"a.png\", 100, 100);", "understory render"),
         ("export3DScene(\"a.x3d\", \"x3d\");", "export"),
         ("saveGraph(\"a.gs\");", "--json"),
-        (
-            "Sphere s = new Sphere(1); s.setShader(shader(\"leaf\"));",
-            "RGBAShader",
-        ),
     ] {
         let text =
             format!("protected void init() [ Axiom ==> M(0); ]\npublic void run() {{ {call} }}");

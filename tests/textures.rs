@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[allow(dead_code, reason = "shared with tests that use more of it")]
 #[path = "support/statistics.rs"]
 mod statistics;
+#[allow(dead_code, reason = "shared with tests that use more of it")]
 #[path = "support/room.rs"]
 mod room;
 
