@@ -19,7 +19,7 @@ mod stack;
 mod traverse;
 
 pub use build::{Box3, BoxKind, Leaves, build};
-pub use flats::{FlatBlock, FlatRay};
+pub use flats::{Candidates, FlatBlock};
 pub use node::Bvh;
 pub use simd::{Kernel, Lanes, WIDTH, dispatch};
 pub use traverse::{BoxRay, Step, Visitor, Walking, walk};

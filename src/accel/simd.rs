@@ -14,6 +14,10 @@
 /// Lanes of a vector.
 pub const WIDTH: usize = 8;
 
+/// Bytes that come from memory at once.
+#[cfg(target_arch = "x86_64")]
+const CACHE_LINE: usize = 64;
+
 /// Eight `f32`.
 pub trait Lanes: Copy {
     /// Reads eight numbers.
@@ -38,6 +42,8 @@ pub trait Lanes: Copy {
     fn signed_by(self, other: Self) -> Self;
     /// Bit i is set if lane i is at most that of `other`; not if one of them is NaN.
     fn at_most(self, other: Self) -> u32;
+    /// Asks for memory that will soon be wanted, without waiting for it. Changes no result.
+    fn prefetch<T>(what: &T);
     /// The lanes of `other` where the highest bit of `flags` is set, those of `self` elsewhere.
     fn or_where(self, other: Self, flags: &[u32; WIDTH]) -> Self;
 }
@@ -66,7 +72,7 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 
 /// One lane after the other.
 #[derive(Clone, Copy)]
-struct Scalar([f32; WIDTH]);
+pub(super) struct Scalar([f32; WIDTH]);
 
 impl Scalar {
     #[inline(always)]
@@ -134,6 +140,9 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
+    fn prefetch<T>(_: &T) {}
+
+    #[inline(always)]
     fn or_where(self, other: Self, flags: &[u32; WIDTH]) -> Self {
         let pick = |lane: usize| {
             let is_set = flags[lane] >> 31 != 0;
@@ -145,11 +154,12 @@ impl Lanes for Scalar {
 
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
-    use super::{Kernel, Lanes, WIDTH};
+    use super::{CACHE_LINE, Kernel, Lanes, WIDTH};
     use std::arch::x86_64::{
-        __m256, _CMP_LE_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps,
-        _mm256_cmp_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
-        _mm256_mul_ps, _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_xor_ps,
+        __m256, _CMP_LE_OQ, _MM_HINT_T0, _mm_prefetch, _mm256_add_ps, _mm256_and_ps,
+        _mm256_andnot_ps, _mm256_blendv_ps, _mm256_cmp_ps, _mm256_loadu_ps, _mm256_max_ps,
+        _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_set1_ps, _mm256_storeu_ps,
+        _mm256_sub_ps, _mm256_xor_ps,
     };
 
     /// The computation, compiled for AVX2.
@@ -230,6 +240,17 @@ mod avx2 {
             // SAFETY: AVX2 is there (see `Avx2`).
             let bits = unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) };
             bits as u32
+        }
+
+        #[inline(always)]
+        fn prefetch<T>(what: &T) {
+            let first: *const i8 = std::ptr::from_ref(what).cast();
+            let mut at = 0;
+            while at < size_of::<T>() {
+                // SAFETY: the address is that of a byte of `what`, and nothing is read into the program.
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(first.add(at)) };
+                at += CACHE_LINE;
+            }
         }
 
         #[inline(always)]

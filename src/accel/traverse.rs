@@ -23,7 +23,7 @@ pub struct BoxRay {
 
 impl BoxRay {
     /// Prepares the line `origin + t · direction`, given 1 / `direction`, which must not be zero.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn new(origin: DVec3, direction: DVec3, inverse: DVec3) -> Self {
         let scale = direction.abs().max_element();
@@ -46,14 +46,14 @@ impl BoxRay {
 
     /// The parameter `t` of the line in the scaled parameter of the box tests, rounded up; always finite, because
     /// a box beside a ray that is parallel to it is entered at infinity.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn limit(&self, t: f64) -> f32 {
         ((t * self.scale) as f32 * BOX_SLACK).min(f32::MAX)
     }
 
     /// The same, rounded down and at least 0 (and not -0, whose bits would be the largest).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn start(&self, t: f64) -> f32 {
         ((t * self.scale) as f32 / BOX_SLACK).clamp(0.0, f32::MAX) + 0.0
@@ -81,6 +81,8 @@ pub enum Step<'b> {
     /// Walk another hierarchy that is in the leaf, then come back and show the rest of it, if there is any, as a leaf of this
     /// name.
     Enter(Walking<'b>, Option<u32>),
+    /// Look into the leaf of this name, which is in it.
+    Look(u32),
     /// Stop.
     Stop,
 }
@@ -92,6 +94,8 @@ pub trait Visitor<'b> {
     /// Is shown a leaf that the ray meets, as [`Bvh::relabel`] called it, from where the ray enters its box to the end of what
     /// counts.
     fn leaf<V: Lanes>(&mut self, leaf: u32, part: [f32; 2]) -> Step<'b>;
+    /// Is told of a leaf that it will probably be shown soon, so that memory can be asked for.
+    fn soon<V: Lanes>(&self, leaf: u32);
     /// Is told that the hierarchy entered last is done; answers with the one around it.
     fn leave(&mut self) -> Walking<'b>;
 }
@@ -107,7 +111,7 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
     loop {
         if let Some(number) = next.child().as_node() {
             if let Some(node) = walking.bvh.nodes.get(number)
-                && let Some(nearest) = node.push_entered::<V, W>(&walking, &mut stack)
+                && let Some(nearest) = node.push_entered::<V, W>(&walking, &mut stack, visitor)
             {
                 next = nearest;
                 continue;
@@ -122,6 +126,10 @@ pub fn walk<'b, V: Lanes, W: Visitor<'b>>(
                     stack.push(Waiting::new(0.0, Child::LEAVE));
                     walking = inner;
                     next = Waiting::new(0.0, Child::ROOT);
+                    continue;
+                }
+                Step::Look(leaf) => {
+                    next = Waiting::new(next.enter(), Child(leaf));
                     continue;
                 }
                 Step::Stop => return ControlFlow::Break(()),
@@ -149,6 +157,7 @@ impl Node {
         &self,
         walking: &Walking<'b>,
         stack: &mut TraversalStack,
+        visitor: &W,
     ) -> Option<Waiting> {
         let ray = &walking.ray;
         // Where the ray is inside all three slabs. A NaN, from 0 · ∞ for a ray in the plane of a face, compares false and
@@ -179,6 +188,13 @@ impl Node {
             let lane = lanes.trailing_zeros() as usize % WIDTH;
             lanes &= lanes - 1;
             let mut other = Waiting::new(enters[lane], self.children[lane]);
+            if let Some(number) = self.children[lane].as_node() {
+                if let Some(node) = walking.bvh.nodes.get(number) {
+                    V::prefetch(node);
+                }
+            } else {
+                visitor.soon::<V>(self.children[lane].0);
+            }
             if W::NEAREST_FIRST {
                 (nearest, other) = (nearest.min(other), nearest.max(other));
             }

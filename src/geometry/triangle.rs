@@ -32,18 +32,16 @@ pub struct FlatHit {
 
 impl Shear {
     /// Prepares `line`; its direction must not be zero.
+    #[inline(always)]
     #[must_use]
     pub fn new(line: &Line) -> Self {
         let d = line.direction.to_array();
-        let magnitude = d.map(f64::abs);
-        let z = if magnitude[0] > magnitude[1] {
-            if magnitude[0] > magnitude[2] { 0 } else { 2 }
-        } else if magnitude[1] > magnitude[2] {
-            1
-        } else {
-            2
-        };
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let [x, y, z] = [d[0].abs(), d[1].abs(), d[2].abs()];
+        // Without branches: which axis it is differs from ray to ray.
+        let is_first = (x > y) & (x > z);
+        let is_second = (x <= y) & (y > z);
+        let z = 2 - 2 * usize::from(is_first) - usize::from(is_second);
+        let (x, y) = ([1, 2, 0][z], [2, 0, 1][z]);
         Self {
             origin: [line.origin[x], line.origin[y], line.origin[z]],
             axes: [x, y, z],
@@ -53,14 +51,14 @@ impl Shear {
 
     /// The start of the line and the axes x, y and z of the sheared frame in that order, then the shear of x and y per unit of z
     /// and 1 / (z of the direction).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn parts(&self) -> ([f64; 3], [usize; 3], [f64; 3]) {
         (self.origin, self.axes, self.shear)
     }
 
     /// A point in the frame where the line is the z axis; z is still in units of the coordinate.
-    #[inline]
+    #[inline(always)]
     fn apply(&self, point: &[f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes;
         let depth = point[z] - self.origin[2];
@@ -73,19 +71,25 @@ impl Shear {
 }
 
 /// Which side of the edge from `a` to `b` the z axis passes; its sign flips exactly when the ends are exchanged.
-#[inline]
+#[inline(always)]
 fn edge(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
 /// Whether no two of `values` have opposite signs; zero agrees with both.
-#[inline]
+#[inline(always)]
 fn agree<const N: usize>(values: [f64; N]) -> bool {
-    values.iter().all(|value| *value >= 0.0) || values.iter().all(|value| *value <= 0.0)
+    let (mut up, mut down) = (true, true);
+    // All of them, without branches: which differs is not foreseeable.
+    for value in values {
+        up &= value >= 0.0;
+        down &= value <= 0.0;
+    }
+    up | down
 }
 
 /// Where the line meets the triangle, edges and corners included. A triangle seen exactly from its edge is not met.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn intersect_triangle(
     shear: &Shear,
@@ -116,7 +120,7 @@ pub fn intersect_triangle(
 }
 
 /// Where the line meets the parallelogram `corner + u·edges[0] + v·edges[1]`, its border included.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn intersect_parallelogram(
     shear: &Shear,

@@ -89,8 +89,15 @@ pub const FLAT_MARGIN: f32 = 1.0 / 256.0;
 /// candidates among triangles of a hundred units. Used by [`crate::accel`].
 pub const FLAT_DRIFT: f32 = 1.0 / 131_072.0;
 
-/// The same along the ray, in normalised units: roundings of corner and start, each at most 2⁻¹², and what the edges may
-/// add. Ten times larger costs nothing that could be measured. Used by [`crate::accel`].
+/// What the coordinates of a hit, times the area, must exceed at least before it counts as certain.
+///
+/// Triangles so tiny that `f32` cannot hold their areas are left to the exact test. Ten times larger or smaller is the same.
+/// Used by [`crate::accel`].
+pub const FLAT_FLOOR: f32 = 1e-24;
+
+/// How much later or earlier than the limits a ray may meet the plane of a triangle or parallelogram and still count as a candidate,
+/// in normalised units: roundings of corner, start and limits, each at most 2⁻¹¹ and together below 2⁻⁷. Ten times larger
+/// costs nothing that could be measured. Used by [`crate::accel`].
 pub const FLAT_DEPTH_MARGIN: f32 = 1.0 / 64.0;
 
 /// By how much the side and the caps of a frustum overlap at the rim, in radii and lengths.

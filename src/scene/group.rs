@@ -215,7 +215,7 @@ impl Group {
     }
 
     /// From this group's frame to that of one of its instances.
-    #[inline]
+    #[inline(always)]
     pub(super) fn to_child(&self, instance: &PlacedGroup) -> DAffine3 {
         instance.placement.map(&self.matrices)
     }

@@ -38,7 +38,7 @@ impl Placement {
     }
 
     /// The map; `matrices` is the list it was stored with.
-    #[inline]
+    #[inline(always)]
     pub(super) fn map(&self, matrices: &[DMat3]) -> DAffine3 {
         let matrix3 = if self.scale.is_nan() {
             matrices[self.quaternion[0].to_bits() as usize]
@@ -67,7 +67,7 @@ fn similarity(matrix: &DMat3) -> Option<([f64; 4], f64)> {
 }
 
 /// The matrix of a unit quaternion.
-#[inline]
+#[inline(always)]
 fn rotation([x, y, z, w]: [f64; 4]) -> DMat3 {
     let (xx, yy, zz) = (2.0 * x * x, 2.0 * y * y, 2.0 * z * z);
     let (xy, xz, yz) = (2.0 * x * y, 2.0 * x * z, 2.0 * y * z);

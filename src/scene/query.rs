@@ -42,6 +42,8 @@ pub(super) trait Sink {
     fn wants(&self, hit: &Hit) -> bool {
         hit.t <= self.interval().until
     }
+    /// Is told of a surface inside the interval that lets nothing through; for sinks that want every one, and not where it is.
+    fn block(&mut self) -> ControlFlow<()>;
     /// Takes an intersection inside the interval; `passage` tells what it lets straight through.
     fn take(&mut self, hit: Hit, passage: impl FnOnce(&Hit) -> Rgb) -> ControlFlow<()>;
 }
@@ -81,6 +83,11 @@ impl Sink for Nearest {
     }
 
     #[inline]
+    fn block(&mut self) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    #[inline]
     fn take(&mut self, hit: Hit, _: impl FnOnce(&Hit) -> Rgb) -> ControlFlow<()> {
         let is_nearer = |best: Hit| (hit.t, hit.primitive) < (best.t, best.primitive);
         if self.best.is_none_or(is_nearer) {
@@ -103,6 +110,12 @@ impl Sink for Transmittance {
     #[inline]
     fn interval(&self) -> Interval {
         self.interval
+    }
+
+    #[inline]
+    fn block(&mut self) -> ControlFlow<()> {
+        self.value = Rgb::BLACK;
+        ControlFlow::Break(())
     }
 
     #[inline]

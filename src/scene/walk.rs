@@ -3,7 +3,7 @@
 use super::Scene;
 use super::group::{Group, Item, ItemKind};
 use super::query::{Hit, Sink};
-use crate::accel::{BoxRay, FlatRay, Kernel, Lanes, Step, Visitor, Walking, walk};
+use crate::accel::{BoxRay, Kernel, Lanes, Step, Visitor, Walking, walk};
 use crate::color::Rgb;
 use crate::geometry::interval::{Interval, Line};
 use crate::geometry::triangle::{FlatHit, Shear, intersect_parallelogram, intersect_triangle};
@@ -36,16 +36,18 @@ impl<S: Sink> Kernel for Walk<'_, '_, S> {
             ray,
             sink,
         } = self;
-        let Some(at) = Place::enter(root, 0, 0.0, &line, sink) else {
+        let Some((shift, inverse)) = enter(&root.bounds, &line, interval(sink, 0.0)) else {
             return ControlFlow::Continue(());
         };
+        let at = Place::new(root, 0, [0.0, shift], &line, inverse);
         let mut visit = Visit {
             scene,
             ray,
             sink,
             at,
-            outer: None,
-            deeper: Vec::new(),
+            root: None,
+            depth: 0,
+            between: Vec::new(),
         };
         let walking = visit.walking();
         walk::<V, _>(walking, &mut visit)
@@ -63,36 +65,32 @@ struct Place<'s> {
     line: Line,
     shear: Shear,
     box_ray: BoxRay,
-    flat_ray: FlatRay,
 }
 
 impl<'s> Place<'s> {
-    /// The group with a line given in its frame, which starts `offset` later than the ray; `None` if the line misses it.
+    /// The group with a line given in its frame, which starts `offset` later than the ray and enters the group another `shift`
+    /// later; `inverse` is 1 / its direction.
     #[inline(always)]
-    fn enter<S: Sink>(
+    fn new(
         group: &'s Group,
         first: u64,
-        offset: f64,
+        [offset, shift]: [f64; 2],
         line: &Line,
-        sink: &S,
-    ) -> Option<Self> {
+        inverse: DVec3,
+    ) -> Self {
         // Start where the line enters the group, so that how far away the ray began costs no digits inside it.
-        let inverse = 1.0 / line.direction;
-        let shift = enter(&group.bounds, line, inverse, interval(sink, offset))?;
         let line = Line {
             origin: line.at(shift),
             direction: line.direction,
         };
-        let shear = Shear::new(&line);
-        Some(Self {
+        Self {
             group,
             first,
             offset: offset + shift,
             line,
-            shear,
+            shear: Shear::new(&line),
             box_ray: BoxRay::new(line.origin, line.direction, inverse),
-            flat_ray: FlatRay::new(&shear),
-        })
+        }
     }
 }
 
@@ -115,9 +113,12 @@ struct Visit<'s, 'k, S> {
     ray: &'k Ray,
     sink: &'k mut S,
     at: Place<'s>,
-    /// Where it came from, last, and before that.
-    outer: Option<Place<'s>>,
-    deeper: Vec<Place<'s>>,
+    /// Where it began, once an instance has been entered; kept, because most are entered from there.
+    root: Option<Place<'s>>,
+    /// How many instances lie around `at`.
+    depth: usize,
+    /// The places between the root and `at`.
+    between: Vec<Place<'s>>,
 }
 
 impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
@@ -129,14 +130,11 @@ impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
         let done = match Item::from_bits(leaf).map(Item::kind) {
             Some(ItemKind::Block(index)) => self.offer_block::<V>(index, part),
             Some(ItemKind::Solid(index)) => self.offer_solid(index),
-            Some(ItemKind::TwoInstances(index)) => {
-                let second = Item::new(ItemKind::Instance(index + 1));
-                return match self.enter(index) {
-                    Some(walking) => Step::Enter(walking, Some(second.bits())),
-                    None => self.enter_or_go_on(index + 1, limit),
-                };
+            Some(kind @ (ItemKind::Instance(index) | ItemKind::TwoInstances(index))) => {
+                let second = Item::new(ItemKind::Instance(index + 1)).bits();
+                let is_two = matches!(kind, ItemKind::TwoInstances(_));
+                return self.enter(index, is_two.then_some(second), limit);
             }
-            Some(ItemKind::Instance(index)) => return self.enter_or_go_on(index, limit),
             Some(ItemKind::Triangle(_) | ItemKind::Quad(_)) | None => ControlFlow::Continue(()),
         };
         match done {
@@ -146,11 +144,31 @@ impl<'s, S: Sink> Visitor<'s> for Visit<'s, '_, S> {
     }
 
     #[inline(always)]
-    fn leave(&mut self) -> Walking<'s> {
-        if let Some(outer) = self.outer.take() {
-            self.at = outer;
-            self.outer = self.deeper.pop();
+    fn soon<V: Lanes>(&self, leaf: u32) {
+        let group = self.at.group;
+        match Item::from_bits(leaf).map(Item::kind) {
+            Some(ItemKind::Block(index)) => {
+                if let Some(block) = group.blocks.get(index) {
+                    V::prefetch(block);
+                }
+            }
+            Some(ItemKind::Instance(index) | ItemKind::TwoInstances(index)) => {
+                if let Some(instance) = group.instances.get(index) {
+                    V::prefetch(instance);
+                }
+            }
+            _ => {}
         }
+    }
+
+    #[inline(always)]
+    fn leave(&mut self) -> Walking<'s> {
+        self.depth = self.depth.saturating_sub(1);
+        let outer = match self.depth {
+            0 => self.root,
+            _ => self.between.pop(),
+        };
+        self.at = outer.expect("invariant: what is entered from is kept");
         self.walking()
     }
 }
@@ -173,29 +191,28 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
         }
     }
 
+    /// Goes into an instance, or on to the rest of the leaf if the ray misses it.
     #[inline(always)]
-    fn enter_or_go_on(&mut self, index: usize, limit: f32) -> Step<'s> {
-        match self.enter(index) {
-            Some(walking) => Step::Enter(walking, None),
-            None => Step::Continue(limit),
-        }
-    }
-
-    /// Goes into an instance, unless the ray misses it.
-    // Called from three places, so not inlined; it returns no lanes and costs no more than a call.
-    #[inline(never)]
-    fn enter(&mut self, index: usize) -> Option<Walking<'s>> {
+    fn enter(&mut self, index: usize, rest: Option<u32>, limit: f32) -> Step<'s> {
         let at = &self.at;
         let instance = &at.group.instances[index];
         let group = &self.scene.groups[instance.group as usize];
         let line = transformed(&at.line, &at.group.to_child(instance));
         let first = at.first + instance.first;
-        let inner = Place::enter(group, first, at.offset, &line, self.sink)?;
-        if let Some(outer) = self.outer.replace(self.at) {
-            self.deeper.push(outer);
+        let offset = at.offset;
+        match enter(&group.bounds, &line, interval(self.sink, offset)) {
+            Some((shift, inverse)) => {
+                if self.depth > 0 {
+                    self.between.push(self.at);
+                } else if self.root.is_none() {
+                    self.root = Some(self.at);
+                }
+                self.depth += 1;
+                self.at = Place::new(group, first, [offset, shift], &line, inverse);
+                Step::Enter(self.walking(), rest)
+            }
+            None => rest.map_or(Step::Continue(limit), Step::Look),
         }
-        self.at = inner;
-        Some(self.walking())
     }
 
     /// Offers what the ray meets of eight flat primitives.
@@ -205,7 +222,19 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
             return ControlFlow::Continue(());
         };
         let start = self.at.box_ray.start(self.sink.start() - self.at.offset);
-        let mut lanes = block.candidates::<V>(&self.at.flat_ray, [near, start, limit]);
+        let candidates = block.candidates::<V>(&self.at.shear, [near, start, limit]);
+        let mut lanes = candidates.possible;
+        if S::EVERY && self.at.group.is_opaque && candidates.certain != 0 {
+            // Nothing comes through, whichever it is that is hit: no need to fetch it and see exactly where.
+            let own = self.own_name();
+            let mut certain = candidates.certain;
+            while certain != 0 {
+                if block.name(certain.trailing_zeros() as usize) != own {
+                    return self.sink.block();
+                }
+                certain &= certain - 1;
+            }
+        }
         while lanes != 0 {
             let name = block.name(lanes.trailing_zeros() as usize);
             lanes &= lanes - 1;
@@ -265,6 +294,16 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
         ControlFlow::Continue(())
     }
 
+    /// What the primitive that the ray starts on is called in this group; 0 if it is not in it.
+    #[inline(always)]
+    fn own_name(&self) -> u32 {
+        let number = self.ray.skip.0.wrapping_sub(self.at.first);
+        let place = usize::try_from(number)
+            .ok()
+            .and_then(|number| self.at.group.places.get(number));
+        place.copied().flatten().map_or(0, Item::bits)
+    }
+
     /// The number in the world of a primitive here.
     #[inline(always)]
     fn primitive(&self, number: u32) -> PrimitiveId {
@@ -297,7 +336,7 @@ impl<'s, S: Sink> Visit<'s, '_, S> {
 }
 
 /// The same line in another frame; the parameter keeps its meaning.
-#[inline]
+#[inline(always)]
 pub(super) fn transformed(line: &Line, map: &DAffine3) -> Line {
     Line {
         origin: map.transform_point3(line.origin),
@@ -305,14 +344,16 @@ pub(super) fn transformed(line: &Line, map: &DAffine3) -> Line {
     }
 }
 
-/// Where the line enters the box, or 0 if it starts inside; `None` if it misses the box within the interval.
-#[inline]
-fn enter(bounds: &Bounds3, line: &Line, inverse: DVec3, interval: Interval) -> Option<f64> {
+/// Where the line enters the box, or 0 if it starts inside, and 1 / its direction; `None` if it misses the box within the
+/// interval.
+#[inline(always)]
+fn enter(bounds: &Bounds3, line: &Line, interval: Interval) -> Option<(f64, DVec3)> {
     /// Two roundings each way.
     const SLACK: f64 = 1.0 + 4.0 * f64::EPSILON;
+    let reciprocal = 1.0 / line.direction;
     let (mut enter, mut exit) = (interval.after.max(0.0), interval.until);
     for axis in 0..3 {
-        let inverse = inverse[axis];
+        let inverse = reciprocal[axis];
         let at_min = (bounds.min[axis] - line.origin[axis]) * inverse;
         let at_max = (bounds.max[axis] - line.origin[axis]) * inverse;
         let (near, far) = if inverse < 0.0 {
@@ -331,5 +372,5 @@ fn enter(bounds: &Bounds3, line: &Line, inverse: DVec3, interval: Interval) -> O
     let starts_inside = line.origin.cmpge(bounds.min).all() && line.origin.cmple(bounds.max).all();
     let shift = if starts_inside { 0.0 } else { enter };
     // A line beside a face that it is parallel to, or an empty box, is entered at infinity.
-    (enter <= exit && enter < f64::INFINITY).then_some(shift)
+    (enter <= exit && enter < f64::INFINITY).then_some((shift, reciprocal))
 }
