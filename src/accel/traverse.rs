@@ -1,4 +1,9 @@
 //! Walking hierarchies along a ray, from group to group, in one loop.
+//!
+//! Tried and dropped, beside Embree in turns (`benches/kernel.rs`): children gathered by a table and sorted by a network instead of one by one
+//! (Cornell box 0.70 of Embree's rate instead of 0.77, forests the same); one instance to a leaf instead of two (2 % faster,
+//! but 121 bytes per instance instead of 108); large pages (no difference beyond the noise). Asking for the memory of
+//! children ahead is kept: 15 % in a tree of a million triangles.
 
 use super::node::{Bvh, Child, Node};
 use super::simd::{Lanes, WIDTH};
