@@ -36,6 +36,8 @@ pub enum Action {
     Fly(FlyArgs),
     /// Check the light transport against what is known on paper; print each number
     Validate(ValidateArgs),
+    /// Count the light that each organ absorbs, reflects and lets through
+    Light(LightArgs),
     /// Serve an editor (Language Server Protocol on standard input and output)
     Lsp(LspArgs),
 }
@@ -216,6 +218,35 @@ pub struct ValidateArgs {
     pub json: Option<PathBuf>,
 }
 
+/// `light`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory light plant.rgg -o organs.csv\n  \
+                        understory light plant.rgg --steps 9 -o organs.csv --organ-error 5%\n  \
+                        understory light crop.rgg -o organs.csv --periodic 1.5,0.75 --sun 135,40\n\n\
+                        One row for each organ: power absorbed, reflected, transmitted and received, in W, with standard errors.\n\
+                        A model without a light stands in daylight, as in its pictures."
+)]
+pub struct LightArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The table
+    #[arg(
+        short,
+        long,
+        value_name = "FILE.csv",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
+    /// Write what was done, and how long it took, to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
 /// `lsp`
 #[derive(Debug, Args)]
 #[command(
@@ -253,13 +284,14 @@ const STYLES: Styles = Styles::styled()
     .placeholder(AnsiColor::Cyan.on_default());
 
 /// The commands with their names.
-const COMMANDS: [(&str, Command); 7] = [
+const COMMANDS: [(&str, Command); 8] = [
     ("check", Command::Check),
     ("derive", Command::Derive),
     ("render", Command::Render),
     ("watch", Command::Watch),
     ("fly", Command::Fly),
     ("validate", Command::Validate),
+    ("light", Command::Light),
     ("lsp", Command::Lsp),
 ];
 
@@ -299,6 +331,7 @@ impl Action {
             Self::Watch(_) => Command::Watch,
             Self::Fly(_) => Command::Fly,
             Self::Validate(_) => Command::Validate,
+            Self::Light(_) => Command::Light,
             Self::Lsp(_) => Command::Lsp,
         }
     }
@@ -339,6 +372,7 @@ fn flag(row: &'static OptionRow) -> Arg {
         Section::Render => "Picture [render]",
         Section::Sky => "Daylight [sky]",
         Section::Fly => "Flight [fly]",
+        Section::Light => "Light on organs [light]",
     };
     let arg = Arg::new(row.key).long(row.key).help_heading(heading);
     if row.is_switch() {

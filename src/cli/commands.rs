@@ -1,6 +1,6 @@
 //! The commands that run once.
 
-use super::args::{CheckArgs, DeriveArgs, FlyArgs, ModelArg, Print, RenderArgs};
+use super::args::{CheckArgs, DeriveArgs, FlyArgs, LightArgs, ModelArg, Print, RenderArgs};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
@@ -8,8 +8,10 @@ use crate::options::Command;
 use crate::pipeline::budget;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::growing;
+use crate::pipeline::lighting;
 use crate::pipeline::making::{Made, Partial};
-use crate::pipeline::store::{JsonTarget, PictureTarget};
+use crate::pipeline::report::{LIGHT_REPORT_KEYS, LightReport, Phase};
+use crate::pipeline::store::{CsvTarget, JsonTarget, PictureTarget};
 use crate::pipeline::studio::{Keep, Run, Studio};
 use crate::pipeline::viewpoint;
 use crate::pipeline::world::{Entry, World};
@@ -134,6 +136,36 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
             made.n_made
         ));
         finished(&made)
+    })
+}
+
+/// `light`: the light on each organ.
+pub(super) fn light(shell: &Shell, args: &LightArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    let output = match &args.output {
+        Some(output) if !args.manners.explain_options => output,
+        _ => return shell.explain(path, Command::Light),
+    };
+    let target = CsvTarget::new(&shell.world, output, lighting::FIRST_COLUMNS)?;
+    let report = args.report.as_deref();
+    let report = report
+        .map(|report| JsonTarget::new(&shell.world, report, LIGHT_REPORT_KEYS))
+        .transpose()?;
+    let mut studio = studio(shell, &args.model)?;
+    run(shell, &mut studio, |studio, run| {
+        let found = lighting::light(studio, run, &shell.cancel)?;
+        let hash = studio.seconds.time(&shell.world, Phase::Write, || {
+            target.write(&shell.world, &found.csv())
+        })?;
+        if let Some(report) = &report {
+            let told = LightReport::new(&shell.world, run, &studio.seconds, &found, hash);
+            report.write(&shell.world, &told)?;
+        }
+        let (file, seconds) = (output.display(), studio.seconds.summary());
+        shell
+            .terminal
+            .note(&format!("{file}: {} ({seconds})", found.summary()));
+        Ok(())
     })
 }
 

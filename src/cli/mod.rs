@@ -45,6 +45,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Render(args) => Some(&args.manners),
         Action::Watch(args) => Some(&args.manners),
         Action::Fly(args) => Some(&args.manners),
+        Action::Light(args) => Some(&args.manners),
     };
     let shell = Shell::new(&request, manners, cancel);
     let result = match &request.action {
@@ -54,6 +55,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
         Action::Fly(args) => commands::fly(&shell, args),
         Action::Validate(args) => validating::validate(&shell, args),
+        Action::Light(args) => commands::light(&shell, args),
         Action::Lsp(_) => Ok(()),
     };
     shell.conclude(result).into()

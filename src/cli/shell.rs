@@ -44,6 +44,7 @@ impl Shell {
             | Command::Watch
             | Command::Fly
             | Command::Validate
+            | Command::Light
             | Command::Lsp => ModelOutput::Error,
         };
         let terminal = Arc::new(Terminal::new(manner, output, cancel.clone()));

@@ -1,5 +1,6 @@
 //! The table of options: one row each.
 
+use super::lighting::{Fraction, PlotSize};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
 use super::value::{
@@ -27,19 +28,23 @@ pub enum Command {
     Watch,
     /// Makes the frames of a film.
     Fly,
+    /// Counts the light on organs.
+    Light,
     /// Serves an editor.
     Lsp,
     /// Measures what is known on paper.
     Validate,
 }
 
-use Command::{Derive, Fly, Render, Validate, Watch};
+use Command::{Derive, Fly, Light, Render, Validate, Watch};
 /// Commands that run the model.
-const GROWING: &[Command] = &[Derive, Render, Watch, Fly];
+const GROWING: &[Command] = &[Derive, Render, Watch, Fly, Light];
 /// Commands that draw random numbers and work in parallel.
-const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Validate];
+const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Light, Validate];
 /// Commands that make pictures.
 const PICTURING: &[Command] = &[Render, Watch, Fly];
+/// Commands that trace light.
+const LIGHTING: &[Command] = &[Render, Watch, Fly, Light];
 
 /// Where an option stands in the file beside a model, and under which heading it is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,16 +59,19 @@ pub enum Section {
     Sky,
     /// `[fly]`
     Fly,
+    /// `[light]`
+    Light,
 }
 
 impl Section {
     /// All sections, in the order in which they are explained.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Model,
         Self::Camera,
         Self::Render,
         Self::Sky,
         Self::Fly,
+        Self::Light,
     ];
 
     /// Its heading in the file; empty for what stands before the first one.
@@ -74,6 +82,7 @@ impl Section {
             Self::Render => "render",
             Self::Sky => "sky",
             Self::Fly => "fly",
+            Self::Light => "light",
         }
     }
 }
@@ -225,7 +234,7 @@ options! {
     /// Light paths traced for each pixel
     samples: NonZeroU32 = "64", "samples", "N", Render, View, PICTURING;
     /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
-    max_depth: Option<u32> = "none", "max-depth", "N", Render, View, PICTURING;
+    max_depth: Option<u32> = "none", "max-depth", "N", Render, View, LIGHTING;
     /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
     supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
     /// How often the ray tracer follows a ray through mirrors and glass
@@ -238,26 +247,26 @@ options! {
     exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, PICTURING;
 
     /// Layers (`setLayer`) whose nodes are neither drawn nor shine; `none`
-    hide_layers: Layers = "none", "hide-layers", "N,N", Render, Scene, PICTURING;
+    hide_layers: Layers = "none", "hide-layers", "N,N", Render, Scene, LIGHTING;
 
     /// Daylight with the sun at this azimuth (from north over east) and elevation, in degrees; `auto`: only for a model without light; `none`
-    sun: Daylight = "auto", "sun", "AZ,EL", Sky, Scene, PICTURING;
+    sun: Daylight = "auto", "sun", "AZ,EL", Sky, Scene, LIGHTING;
     /// Puts the sun where it stands at this time (universal time unless an offset says otherwise); needs `place`
-    date: Option<Moment> = "none", "date", "YYYY-MM-DDThh:mm", Sky, Scene, PICTURING;
+    date: Option<Moment> = "none", "date", "YYYY-MM-DDThh:mm", Sky, Scene, LIGHTING;
     /// Where on Earth the model stands, in degrees, north and east positive; for `date`
-    place: Option<Place> = "none", "place", "LAT,LON", Sky, Scene, PICTURING;
+    place: Option<Place> = "none", "place", "LAT,LON", Sky, Scene, LIGHTING;
     /// What the sun gives a surface that faces it, W/m²; `auto`: what `turbidity` lets through
-    sun_irradiance: Option<SunIrradiance> = "auto", "sun-irradiance", "R,G,B", Sky, Scene, PICTURING;
+    sun_irradiance: Option<SunIrradiance> = "auto", "sun-irradiance", "R,G,B", Sky, Scene, LIGHTING;
     /// What the sky is: `clear`, `overcast`, `uniform`, the same radiance R,G,B all round, or a panorama `FILE.exr` or `FILE.hdr`; `auto`: clear, where there is daylight
-    sky: SkyKind = "auto", "sky", "KIND", Sky, Scene, PICTURING;
+    sky: SkyKind = "auto", "sky", "KIND", Sky, Scene, LIGHTING;
     /// Scales sky and sun to give so many watts per square metre on level ground, summed over red, green and blue; `auto`: as in nature, or as the panorama has it
-    sky_power: Option<Brightness> = "auto", "sky-power", "W/M2", Sky, Scene, PICTURING;
+    sky_power: Option<Brightness> = "auto", "sky-power", "W/M2", Sky, Scene, LIGHTING;
     /// Turns a panorama about the vertical by so many degrees, counter-clockwise as seen from above
-    sky_turn: f64 = "0", "sky-turn", "DEG", Sky, Scene, PICTURING;
+    sky_turn: f64 = "0", "sky-turn", "DEG", Sky, Scene, LIGHTING;
     /// Haze of the air, from 1 (clear) to 10
-    turbidity: Turbidity = "3", "turbidity", "T", Sky, Scene, PICTURING;
+    turbidity: Turbidity = "3", "turbidity", "T", Sky, Scene, LIGHTING;
     /// Reflectance of a plane to stand on; `auto`: a plane for a model without light and ground; `none`
-    ground: Ground = "auto", "ground", "R,G,B", Sky, Scene, PICTURING;
+    ground: Ground = "auto", "ground", "R,G,B", Sky, Scene, LIGHTING;
 
     /// Flies once round the middle of the picture
     orbit: bool = "false", "orbit", "", Fly, Flight, &[Fly];
@@ -265,6 +274,17 @@ options! {
     flight_frames: NonZeroU32 = "120", "flight-frames", "N", Fly, Flight, &[Fly];
     /// The frames to make, the last one not included; `auto`: the whole flight
     frames: Option<Range<u32>> = "auto", "frames", "A..B", Fly, Machine, &[Fly];
+
+    /// Photons that are followed to count the light on organs; with a wanted error, to begin with
+    photons: NonZeroU64 = "1000000", "photons", "N", Light, Machine, &[Light];
+    /// Follows photons until 19 of 20 lit organs know what they absorb with at most this relative standard error
+    organ_error: Option<Fraction> = "none", "organ-error", "FRACTION", Light, Machine, &[Light];
+    /// Follows photons until the light that all organs absorb together is known with at most this relative standard error
+    total_error: Option<Fraction> = "none", "total-error", "FRACTION", Light, Machine, &[Light];
+    /// Photons after which a wanted error is given up
+    most_photons: NonZeroU64 = "1000000000", "most-photons", "N", Light, Machine, &[Light];
+    /// The model stands in a plot of so many metres along x and y that repeats itself without end
+    periodic: Option<PlotSize> = "none", "periodic", "X,Y", Light, Machine, &[Light];
 }
 
 impl Options {

@@ -14,7 +14,7 @@ use crate::eval;
 use crate::eval::files::ModelFiles;
 use crate::growth::{Growth, GrowthOptions};
 use crate::integrator::CancelToken;
-use crate::interpret::{self, Organs, Summary};
+use crate::interpret::{self, Organs, Purpose, Sensor, Summary};
 use crate::options::{Options, Origin};
 use crate::scene::SceneError;
 use crate::scene::description::SceneDescription;
@@ -35,6 +35,8 @@ pub struct Drawn {
     pub organs: Arc<Organs>,
     /// What surroundings depend on.
     pub summary: Summary,
+    /// What measures light; none in drawings for pictures.
+    pub sensors: Vec<Sensor>,
 }
 
 /// What `derive --json` writes.
@@ -202,7 +204,7 @@ fn steps(options: &Options, growth: &Growth) -> u32 {
     }
 }
 
-/// Turns a grown graph into geometry of at most `memory` bytes, bodies of at most `--max-modules` nodes; also what is questionable about it.
+/// Turns a grown graph, for this purpose, into geometry of at most `memory` bytes, bodies of at most `--max-modules` nodes; also what is questionable about it.
 ///
 /// # Errors
 /// If a part of the model cannot be drawn.
@@ -210,23 +212,25 @@ pub fn draw(
     run: &Run,
     memory: u64,
     growth: &mut Growth,
+    purpose: Purpose,
     cancel: &CancelToken,
 ) -> Result<(Drawn, Diagnostics), Failure> {
     let limits = interpret::Limits {
         memory,
         body_nodes: run.options.max_modules.value.get(),
         hidden: run.options.hide_layers.value,
+        purpose,
         ..interpret::Limits::default()
     };
     match growth.drawing(|sketch| interpret::interpret(sketch, limits)) {
         Ok(drawn) => {
             let organs = Arc::new(drawn.organs);
-            let (scene, summary) = (drawn.scene, drawn.summary);
             Ok((
                 Drawn {
-                    scene,
+                    scene: drawn.scene,
                     organs,
-                    summary,
+                    summary: drawn.summary,
+                    sensors: drawn.sensors,
                 },
                 drawn.warnings,
             ))

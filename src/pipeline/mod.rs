@@ -14,6 +14,7 @@ pub mod failure;
 pub mod growing;
 pub mod inputs;
 pub mod light_models;
+pub mod lighting;
 pub mod making;
 pub mod packed;
 pub mod project_files;

@@ -1,6 +1,8 @@
 //! What was done, what it took, and what came out: the object that `--report` writes.
 
 use super::content_hash::ContentHash;
+use super::lighting::FoundLight;
+use super::studio::Run;
 use super::world::World;
 use crate::diag::SourceMap;
 use crate::options::{Options, explain};
@@ -148,6 +150,93 @@ pub struct Report<'a> {
     image_hash: String,
 }
 
+/// Keys by which an earlier report of `light` is known when it is to be replaced.
+pub const LIGHT_REPORT_KEYS: &[&str] = &["version", "model_hash", "seconds", "table_hash"];
+
+/// The object that `light --report` writes. Powers in W, summed over red, green and blue.
+#[derive(Serialize)]
+pub struct LightReport<'a> {
+    version: &'static str,
+    model_hash: String,
+    seed: i64,
+    options: BTreeMap<&'static str, OptionValue<'a>>,
+    seconds: &'a PhaseSeconds,
+    rays: u64,
+    photons_emitted: u64,
+    organs: usize,
+    /// By organs together, and its standard error.
+    absorbed: f64,
+    absorbed_error: f64,
+    reflected: f64,
+    transmitted: f64,
+    /// By what belongs to no organ, such as the ground.
+    absorbed_elsewhere: f64,
+    /// emitted = absorbed by all + escaped + lost + roulette.
+    emitted: f64,
+    escaped: f64,
+    lost: f64,
+    roulette: f64,
+    books_balance: bool,
+    error_reached: bool,
+    peak_memory_bytes: Option<u64>,
+    table_hash: String,
+}
+
+impl<'a> LightReport<'a> {
+    /// The report of a run whose table has the hash `table`.
+    pub fn new(
+        world: &dyn World,
+        run: &'a Run,
+        seconds: &'a PhaseSeconds,
+        found: &FoundLight,
+        table: ContentHash,
+    ) -> Self {
+        let lighting = &found.lighting;
+        let (total, books) = (&lighting.total, &lighting.books);
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            model_hash: run.sources.model_hash.to_string(),
+            seed: run.options.seed.value,
+            options: values(&run.options, &run.sources.map),
+            seconds,
+            rays: lighting.n_rays,
+            photons_emitted: lighting.n_photons,
+            organs: lighting.organs.len(),
+            absorbed: total.absorbed.sum(),
+            absorbed_error: total.errors.absorbed,
+            reflected: total.reflected.sum(),
+            transmitted: total.transmitted.sum(),
+            absorbed_elsewhere: lighting.rest.absorbed.sum(),
+            emitted: books.emitted.sum(),
+            escaped: books.escaped.sum(),
+            lost: books.lost.sum(),
+            roulette: books.roulette.sum(),
+            books_balance: books.is_balanced,
+            error_reached: lighting.is_reached,
+            peak_memory_bytes: world.peak_memory(),
+            table_hash: table.to_string(),
+        }
+    }
+}
+
+/// All options with their values and who set them.
+fn values<'a>(
+    options: &'a Options,
+    sources: &SourceMap,
+) -> BTreeMap<&'static str, OptionValue<'a>> {
+    let values = options.entries().into_iter().map(|entry| {
+        let origin = explain::describe(entry.origin, sources);
+        (
+            entry.row.key,
+            OptionValue {
+                value: entry.text,
+                origin,
+            },
+        )
+    });
+    values.collect()
+}
+
 impl<'a> Report<'a> {
     /// The report of a run whose result has the hash `image`.
     pub fn new(
@@ -159,21 +248,11 @@ impl<'a> Report<'a> {
         image: ContentHash,
     ) -> Self {
         let (sources, model_hash) = model;
-        let values = options.entries().into_iter().map(|entry| {
-            let origin = explain::describe(entry.origin, sources);
-            (
-                entry.row.key,
-                OptionValue {
-                    value: entry.text,
-                    origin,
-                },
-            )
-        });
         Self {
             version: env!("CARGO_PKG_VERSION"),
             model_hash: model_hash.to_string(),
             seed: options.seed.value,
-            options: values.collect(),
+            options: values(options, sources),
             seconds,
             rays: effort.n_rays,
             samples_per_pixel: effort.samples_per_pixel,

@@ -107,6 +107,55 @@ impl JsonTarget {
     }
 }
 
+/// A table to be.
+#[derive(Clone, Debug)]
+pub struct CsvTarget {
+    path: PathBuf,
+    first_columns: &'static str,
+}
+
+impl CsvTarget {
+    /// A table at `path`; an earlier one of its kind is known by its first columns.
+    ///
+    /// # Errors
+    /// If the suffix is not `.csv`, files cannot be made there, or something else is there already.
+    pub fn new(
+        world: &dyn World,
+        path: &Path,
+        first_columns: &'static str,
+    ) -> Result<Self, Failure> {
+        if path.extension().is_none_or(|suffix| suffix != "csv") {
+            return Err(Failure::Usage(format!(
+                "`{}` does not end in `.csv`",
+                path.display()
+            )));
+        }
+        let target = Self {
+            path: path.to_owned(),
+            first_columns,
+        };
+        target.check(world)?;
+        Ok(target)
+    }
+
+    /// Writes the table; gives the hash of the file.
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there before is then untouched.
+    pub fn write(&self, world: &dyn World, text: &str) -> Result<ContentHash, Failure> {
+        self.check(world)?;
+        put(world, &self.path, text.as_bytes())?;
+        Ok(ContentHash::of([text.as_bytes()]))
+    }
+
+    fn check(&self, world: &dyn World) -> Result<(), Failure> {
+        may_write(world, &self.path, "an earlier table of this kind", |head| {
+            let n = head.len().min(self.first_columns.len());
+            head[..n] == self.first_columns.as_bytes()[..n]
+        })
+    }
+}
+
 /// Whether a file may be put at `path`: its folder takes files, and what is there is nothing, empty, or `is_own`.
 fn may_write(
     world: &dyn World,

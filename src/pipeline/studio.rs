@@ -16,6 +16,7 @@ use crate::check::model::Model;
 use crate::diag::Diagnostics;
 use crate::growth::Growth;
 use crate::integrator::CancelToken;
+use crate::interpret::Purpose;
 use crate::light::SkyImage;
 use crate::options::surroundings::SkyKind;
 use crate::options::{Options, Origin, Stage};
@@ -58,8 +59,8 @@ pub enum Keep {
 
 /// Runs one model, perhaps many times, and repeats only what changed.
 pub struct Studio<'w> {
-    world: &'w dyn World,
-    audience: Arc<dyn Audience>,
+    pub(super) world: &'w dyn World,
+    pub(super) audience: Arc<dyn Audience>,
     path: PathBuf,
     keep: Keep,
     /// What the model may use besides its own folder, and where its charts go.
@@ -260,6 +261,34 @@ impl<'w> Studio<'w> {
         Ok(scene)
     }
 
+    /// Grows the model and draws it for a light model, with the light and the ground that the options ask for.
+    ///
+    /// # Errors
+    /// As [`grow`](Self::grow), or if it cannot be drawn.
+    pub(super) fn draw_for_light(
+        &mut self,
+        run: &Run,
+        cancel: &CancelToken,
+    ) -> Result<Drawn, Failure> {
+        let panorama = self.panorama(run)?;
+        let mut growth = self.grow(run, cancel)?;
+        self.audience.begins("drawing");
+        let memory = budget::memory(self.world, &run.options);
+        let drawn = self.seconds.time(self.world, Phase::Scene, || {
+            growing::draw(run, memory, &mut growth, Purpose::LightModel, cancel)
+        });
+        self.audience.ends();
+        let (mut drawn, found) = drawn?;
+        if !found.is_empty() {
+            self.audience.warned(&run.sources.map, &found);
+        }
+        let panorama = panorama.map(|(path, file)| decode(&path, &file));
+        let has_light = drawn.summary.has_light;
+        let outdoors = Outdoors::new(&run.options, has_light, panorama.transpose()?)?;
+        outdoors.complete(&mut drawn.scene, &drawn.summary, &run.options);
+        Ok(drawn)
+    }
+
     /// The panorama that the options name, as a file. Its path starts at the folder of who wrote it: the file beside the
     /// model, or the user.
     fn panorama(&self, run: &Run) -> Result<Option<(PathBuf, Vec<u8>)>, Failure> {
@@ -295,7 +324,7 @@ impl<'w> Studio<'w> {
         self.audience.begins("drawing");
         let memory = budget::memory(self.world, &run.options);
         let drawn = self.seconds.time(self.world, Phase::Scene, || {
-            growing::draw(run, memory, &mut growth, cancel)
+            growing::draw(run, memory, &mut growth, Purpose::Picture, cancel)
         });
         self.audience.ends();
         let (drawn, found) = drawn?;
