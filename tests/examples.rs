@@ -48,6 +48,7 @@ fn all_examples_are_here() {
         names,
         [
             "bush.rgg",
+            "dieback.rgg",
             "forest.rgg",
             "koch.rgg",
             "poplar.rgg",
@@ -162,6 +163,16 @@ fn textured_pictures_are_the_same_for_any_number_of_threads() {
     };
     let one = shot(1);
     assert!(shot(3) == one && shot(8) == one);
+
+/// Branches die in the shade, and more of them within the stand than at its edge.
+#[test]
+fn shaded_branches_die_back() {
+    let growth = example("dieback.rgg", &[("steps", "6")]).grow();
+    let counts = growth.counts();
+    let n_of = |name: &str| counts.iter().find(|(found, _)| found == name).unwrap().1;
+    let (living, dead) = (n_of("Branch"), n_of("Stub"));
+    assert_eq!(living + dead, 6 * 6 * 6 * 4);
+    assert!(living > 300 && dead > 60, "{living} living, {dead} dead");
 }
 
 #[test]
