@@ -163,8 +163,9 @@ fn textured_pictures_are_the_same_for_any_number_of_threads() {
     };
     let one = shot(1);
     assert!(shot(3) == one && shot(8) == one);
+}
 
-/// Branches die in the shade, and more of them within the stand than at its edge.
+/// Branches die in the shade.
 #[test]
 fn shaded_branches_die_back() {
     let growth = example("dieback.rgg", &[("steps", "6")]).grow();
