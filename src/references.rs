@@ -25,6 +25,10 @@
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
 //! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
 //!
+//! # Cigolle2014
+//! Z. Cigolle, S. Donow, D. Evangelakos, M. Mara, M. McGuire, Q. Meyer: A Survey of Efficient Representations for
+//! Independent Unit Vectors. Journal of Computer Graphics Techniques 3(2), 2014. <https://jcgt.org/published/0003/02/01/>
+//!
 //! # ContyKulla2018
 //! A. Conty Estevez, C. Kulla: Importance Sampling of Many Lights with Adaptive Tree Splitting. Proceedings of the ACM on
 //! Computer Graphics and Interactive Techniques 1(2), 2018. <https://doi.org/10.1145/3233305>
@@ -86,6 +90,10 @@
 //! T. Ize: Robust BVH Ray Traversal. Journal of Computer Graphics Techniques 2(2), 2013.
 //! <https://jcgt.org/published/0002/02/02/>
 //!
+//! # Jensen1995
+//! H. W. Jensen: Importance Driven Path Tracing Using the Photon Map. Rendering Techniques (Eurographics Workshop), 1995.
+//! <https://doi.org/10.1007/978-3-7091-9430-0_31>
+//!
 //! # Jensen1996
 //! H. W. Jensen: Global Illumination using Photon Maps. Rendering Techniques (Eurographics Workshop on Rendering), 1996.
 //! <https://doi.org/10.1007/978-3-7091-7484-5_3>
@@ -129,6 +137,10 @@
 //! # Mitchell1987
 //! D. Mitchell: Generating Antialiased Images at Low Sampling Densities. SIGGRAPH, 1987.
 //! <https://doi.org/10.1145/37401.37410>
+//!
+//! # Muller2017
+//! T. Müller, M. Gross, J. Novák: Practical Path Guiding for Efficient Light-Transport Simulation. Computer Graphics Forum
+//! 36(4), 2017. <https://doi.org/10.1111/cgf.13227>
 //!
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik

@@ -10,6 +10,7 @@
 mod clear_shadow;
 mod context;
 pub mod driver;
+pub mod guide;
 pub mod interception;
 pub mod medium;
 pub mod mis;

@@ -6,9 +6,13 @@
 //! What lets light straight through (alpha, panes) is met by chance and otherwise not there at all, which is not a scattering
 //! event; shadow rays multiply the fraction that passes instead. Both have the same mean.
 //!
+//! Where mirrors or glass make caustics, a [guide](super::guide) learns from which directions light comes, and matt surfaces
+//! scatter there more often.
+//!
 //! Mirrors and smooth glass send light into single directions, which light sampling cannot meet: light found behind them counts
 //! in full. So light of a lamp without extent, or of the small disk of the sun, that comes through curved glass is not found.
 
+use super::guide::{self, Advice, Guide};
 use super::medium::{Bodies, left_after};
 use super::mis::power_heuristic;
 use super::sources::{Reach, Shading, Sources, receiver};
@@ -31,6 +35,8 @@ pub struct Path {
     pub strategies: Strategies,
     /// Scattering events after which dim paths are ended by chance; `None` never ends them (then set `max_depth`).
     pub roulette_after: Option<u32>,
+    /// Whether paths may be guided to where light is. The mean is the same, the noise is not.
+    pub guided: bool,
 }
 
 impl Default for Path {
@@ -39,6 +45,7 @@ impl Default for Path {
             max_depth: None,
             strategies: Strategies::Both,
             roulette_after: Some(4),
+            guided: true,
         }
     }
 }
@@ -62,12 +69,18 @@ impl Integrator for Path {
     fn prepare<'s>(
         &self,
         scene: &'s Scene,
-        _context: &RenderContext<'_>,
+        context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        let guide = if self.guided && self.strategies == Strategies::Both {
+            Guide::new(scene, context)?
+        } else {
+            None
+        };
         Ok(Box::new(PathEstimator {
             scene,
             sources: Sources::new(scene),
             bodies: Bodies::new(scene),
+            guide,
             settings: self.clone(),
         }))
     }
@@ -78,6 +91,7 @@ struct PathEstimator<'s> {
     scene: &'s Scene,
     sources: Sources<'s>,
     bodies: Bodies<'s>,
+    guide: Option<Guide>,
     settings: Path,
 }
 
@@ -107,7 +121,7 @@ impl RadianceEstimator for PathEstimator<'_> {
         // L radiance so far, β throughput, p_b density of the last scattering ([Kajiya1986]; Veach's thesis, §9 and §10).
         let mut radiance = Rgb::BLACK;
         let mut throughput = Rgb::WHITE;
-        let mut compression = 1.0;
+        let mut worth = Rgb::WHITE;
         let mut last: Option<LastScattering> = None;
         let mut media = self.bodies.around(ray.origin);
         let mut reach = Reach::First;
@@ -141,11 +155,13 @@ impl RadianceEstimator for PathEstimator<'_> {
                 normal_s: point.normal_s,
             };
             let choice = sampler.point(Use::Choice);
+            let advice = self.advice(&point, &optics, n_scatterings);
             if optics.scattering.is_smooth() {
                 let shading = Shading {
                     point: &point,
                     frame: &frame,
                     scattering: &optics.scattering,
+                    advice,
                     wo,
                     absorption: [
                         media.absorption(),
@@ -160,17 +176,7 @@ impl RadianceEstimator for PathEstimator<'_> {
             }
 
             // Scatter.
-            let numbers = ScatterNumbers {
-                direction: sampler.point(Use::Direction),
-                lobe: if optics.scattering.is_matt() {
-                    DVec2::ZERO
-                } else {
-                    sampler.point(Use::Lobe)
-                },
-            };
-            let scattered = optics
-                .scattering
-                .sample(&frame, wo, numbers, Transport::Radiance);
+            let scattered = scatter(&frame, &optics, advice, wo, sampler);
             let Some(scattered) = scattered else { break };
             throughput *= scattered.weight;
             if throughput.is_black() {
@@ -180,19 +186,20 @@ impl RadianceEstimator for PathEstimator<'_> {
                 .cross(&mut media, &point, &frame, [wo, scattered.wi]);
 
             // Go on with a probability that falls with the throughput, so that long dim paths stay affordable and the
-            // estimate stays unbiased. That light is compressed inside glass makes no path more worthy.
-            compression *= scattered.compression;
+            // estimate stays unbiased. That light is compressed inside glass makes no path more worthy, and that a path was
+            // guided, where there is more light than its throughput tells, makes none less worthy.
+            worth *= scattered.worth;
             if self
                 .settings
                 .roulette_after
                 .is_some_and(|after| n_scatterings >= after)
             {
-                let worth = throughput.max_channel() / compression;
-                let survival = worth.min(HIGHEST_SURVIVAL);
+                let survival = worth.max_channel().min(HIGHEST_SURVIVAL);
                 if choice.y >= survival {
                     break;
                 }
                 throughput *= 1.0 / survival;
+                worth *= 1.0 / survival;
             }
             last = Some(LastScattering {
                 from: receiver(&point, &frame, &optics.scattering, wo),
@@ -232,7 +239,80 @@ impl Way<'_> {
     }
 }
 
+/// How a path goes on.
+struct Scattered {
+    wi: DVec3,
+    /// f · |cos θ| / pdf.
+    weight: Rgb,
+    density: Density,
+    /// The same weight, had the surface alone chosen the direction, without the compression of light in glass.
+    worth: Rgb,
+}
+
+/// Chooses the direction in which a path goes on, by advice if there is any and by what the surface does to light.
+fn scatter(
+    frame: &ScatteringFrame,
+    optics: &Optics<'_>,
+    advice: Option<Advice<'_>>,
+    wo: DVec3,
+    sampler: &Sampler,
+) -> Option<Scattered> {
+    let scattering = &optics.scattering;
+    let needs_lobe = advice.is_some() || !scattering.is_matt();
+    let numbers = ScatterNumbers {
+        direction: sampler.point(Use::Direction),
+        lobe: if needs_lobe {
+            sampler.point(Use::Lobe)
+        } else {
+            DVec2::ZERO
+        },
+    };
+    let Some(advice) = advice else {
+        let sample = scattering.sample(frame, wo, numbers, Transport::Radiance)?;
+        return Some(Scattered {
+            wi: sample.wi,
+            weight: sample.weight,
+            density: sample.density,
+            worth: sample.weight / sample.compression,
+        });
+    };
+
+    // One of the two chooses; the density is that of both together.
+    let wi = if numbers.lobe.x < advice.share {
+        advice.sample(numbers.direction)
+    } else {
+        scattering
+            .sample(frame, wo, numbers, Transport::Radiance)?
+            .wi
+    };
+    let value = scattering.value_cos(frame, wo, wi, Transport::Radiance);
+    let own = scattering.pdf_solid_angle(frame, wo, wi, Transport::Radiance);
+    if value.is_black() {
+        return None;
+    }
+    let pdf = advice.combined_pdf(own, wi);
+    Some(Scattered {
+        wi,
+        weight: value / pdf,
+        density: Density::SolidAngle(pdf),
+        worth: value / own,
+    })
+}
+
 impl PathEstimator<'_> {
+    /// What the guide knows of the light that arrives where a path does.
+    fn advice(
+        &self,
+        point: &SurfacePoint,
+        optics: &Optics<'_>,
+        n_scatterings: u32,
+    ) -> Option<Advice<'_>> {
+        let guide = self.guide.as_ref()?;
+        guide::is_guided(optics)
+            .then(|| guide.advice(point, n_scatterings))
+            .flatten()
+    }
+
     /// Follows a ray to the surface that its light comes from.
     ///
     /// It looks on along the same ray after each surface that it passes through, not along a ray that starts there: that would

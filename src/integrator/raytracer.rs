@@ -189,6 +189,7 @@ impl RaytracerEstimator<'_> {
             point,
             frame,
             scattering,
+            advice: None,
             wo,
             absorption: [
                 media.absorption(),

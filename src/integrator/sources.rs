@@ -6,6 +6,7 @@
 
 use super::RayCounts;
 use super::clear_shadow;
+use super::guide::Advice;
 use super::medium::left_after;
 use super::mis::power_heuristic;
 use super::path::Strategies;
@@ -67,6 +68,8 @@ pub struct Shading<'a> {
     pub frame: &'a ScatteringFrame,
     /// What it does to light.
     pub scattering: &'a Scattering<'a>,
+    /// What else decides where a path goes on.
+    pub advice: Option<Advice<'a>>,
     /// Unit direction from the point to where it is seen from.
     pub wo: DVec3,
     /// What is absorbed per metre on the side of `wo` and on the other side, 1/m.
@@ -85,10 +88,14 @@ impl Shading<'_> {
         receiver(self.point, self.frame, self.scattering, self.wo)
     }
 
-    /// Density with which scattering finds `wi`.
+    /// Density with which a path that goes on finds `wi`.
     fn pdf_solid_angle(&self, wi: DVec3) -> f64 {
         let scattering = self.scattering;
-        scattering.pdf_solid_angle(self.frame, self.wo, wi, Transport::Radiance)
+        let own = scattering.pdf_solid_angle(self.frame, self.wo, wi, Transport::Radiance);
+        match self.advice {
+            Some(advice) => advice.combined_pdf(own, wi),
+            None => own,
+        }
     }
 
     /// What is absorbed on the side of `wi`, 1/m.

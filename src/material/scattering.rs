@@ -328,7 +328,11 @@ impl Scattering<'_> {
         let (reflectance, transmittance) = self.matt(frame, wo, transport);
         if self.is_matt() {
             let wi = sample_matt(frame, wo, numbers.direction, reflectance, transmittance)?;
-            return self.smooth_sample(frame, wo, wi, transport);
+            return if frame.normal_g == frame.normal_s {
+                matt_sample(frame, wo, wi, reflectance, transmittance)
+            } else {
+                self.smooth_sample(frame, wo, wi, transport)
+            };
         }
 
         // Choose a part.
@@ -409,6 +413,30 @@ impl Scattering<'_> {
             lobes.map(|lobe| specular::compression(lobe, frame.is_in_front(wo), transport));
         factors.product()
     }
+}
+
+/// The sample of a direction that was chosen by a surface with nothing but a matt part and one normal: what
+/// [`Scattering::smooth_sample`] would find, in which the cosines cancel.
+fn matt_sample(
+    frame: &ScatteringFrame,
+    wo: DVec3,
+    wi: DVec3,
+    reflectance: Rgb,
+    transmittance: Rgb,
+) -> Option<ScatterSample> {
+    let chance = Side::reflection_chance(reflectance, transmittance)?;
+    let (part, share) = if frame.is_in_front(wo) == frame.is_in_front(wi) {
+        (reflectance, chance)
+    } else {
+        (transmittance, 1.0 - chance)
+    };
+    let pdf = share * frame.normal_g.dot(wi).abs() * FRAC_1_PI;
+    (pdf > 0.0).then(|| ScatterSample {
+        wi,
+        weight: part / share,
+        density: Density::SolidAngle(pdf),
+        compression: 1.0,
+    })
 }
 
 /// A direction with density |cos θ| / π in the half space that is chosen by the reflected and the transmitted part.

@@ -18,12 +18,25 @@ pub const fn mix(mut x: u64) -> u64 {
 /// A 64-bit number that depends on every one of `keys` and on their order.
 #[must_use]
 pub fn hash(keys: &[u64]) -> u64 {
+    keys.iter().fold(NO_KEYS, |state, key| hash_on(state, *key))
+}
+
+/// [`hash`] of no keys.
+const NO_KEYS: u64 = 0x6A09_E667_F3BC_C908;
+
+/// The [`hash`] of some keys and one more, given that of the others.
+#[must_use]
+pub const fn hash_on(others: u64, key: u64) -> u64 {
     // The odd constant is 2^64 / golden ratio: keys that count 0, 1, 2 … start far apart.
-    keys.iter().fold(0x6A09_E667_F3BC_C908, |state, key| {
-        mix(state
-            .wrapping_add(key.wrapping_mul(0x9E37_79B9_7F4A_7C15))
-            .wrapping_add(0x632B_E59B_D9B4_E019))
-    })
+    mix(others
+        .wrapping_add(key.wrapping_mul(0x9E37_79B9_7F4A_7C15))
+        .wrapping_add(0x632B_E59B_D9B4_E019))
+}
+
+/// [`hash`] of one key.
+#[must_use]
+pub const fn hash_one(key: u64) -> u64 {
+    hash_on(NO_KEYS, key)
 }
 
 /// The uniform number in [0, 1) made of the upper 53 bits.

@@ -4,9 +4,9 @@
 //! well-spread points of the square stay well spread. Densities per unit area (`pdf_area`) or per steradian
 //! (`pdf_solid_angle`) are named; they never share a name.
 
-use crate::math::functions::{cos, sin};
+use crate::math::functions::{cos, sin, sin_cos};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
 
 /// A point of the unit disk, uniform (density 1/π per area), by the concentric map of [Shirley1997](crate::references#shirley1997).
 #[must_use]
@@ -15,12 +15,14 @@ pub fn disk(u: DVec2) -> DVec2 {
     if p == DVec2::ZERO {
         return DVec2::ZERO;
     }
-    let (radius, angle) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
+    if p.x.abs() > p.y.abs() {
+        let (sin, cos) = sin_cos(FRAC_PI_4 * (p.y / p.x));
+        DVec2::new(p.x * cos, p.x * sin)
     } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    DVec2::new(radius * cos(angle), radius * sin(angle))
+        // The angle is the rest to a right one; the smaller angle is the quicker one.
+        let (sin, cos) = sin_cos(FRAC_PI_4 * (p.x / p.y));
+        DVec2::new(p.y * sin, p.y * cos)
+    }
 }
 
 /// A unit direction of the hemisphere round +z with density cos θ / π per steradian (Malley's method: a disk point, lifted).

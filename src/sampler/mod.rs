@@ -57,7 +57,7 @@ const PADS_PER_VERTEX: u64 = 1 << 18;
 #[derive(Clone, Debug)]
 pub struct Sampler {
     kind: SamplerKind,
-    /// Chooses the scrambling: the same for all samples of one half of one pixel, and for nothing else.
+    /// Hash of the stream, which chooses the scrambling: the same for all samples of one half of one pixel, and for nothing else.
     stream: u64,
     index: u32,
     first_pad: u64,
@@ -71,7 +71,7 @@ impl Sampler {
     pub const fn new(kind: SamplerKind, stream: u64, index: u32) -> Self {
         Self {
             kind,
-            stream,
+            stream: rng::hash_one(stream),
             index,
             first_pad: 0,
         }
@@ -90,10 +90,12 @@ impl Sampler {
 
     /// The point of pad `pad`.
     fn pad(&self, pad: u64) -> DVec2 {
-        let key = rng::hash(&[self.stream, pad]);
+        let key = rng::hash_on(self.stream, pad);
         let [x, y] = match self.kind {
             SamplerKind::OwenSobol => sobol::scrambled_pad(self.index, key),
-            SamplerKind::Independent => split(rng::hash(&[key, u64::from(self.index)])),
+            SamplerKind::Independent => {
+                split(rng::hash_on(rng::hash_one(key), u64::from(self.index)))
+            }
         };
         DVec2::new(rng::unit_f64_from_u32(x), rng::unit_f64_from_u32(y))
     }

@@ -84,6 +84,8 @@ pub struct Scene {
     groups: Vec<Group>,
     /// From world coordinates to the root's frame.
     to_root: DAffine3,
+    /// Back again.
+    from_root: DAffine3,
     planes: Vec<WorldPlane>,
     /// Sorted by primitive.
     emitters: Vec<Emitter>,
@@ -143,12 +145,14 @@ impl Scene {
             }
             None => (DAffine3::IDENTITY, Bounds3::EMPTY),
         };
+        let from_root = to_root.inverse();
         let mut scene = Self {
             materials: description.materials,
             lights: description.lights,
             environment: description.environment,
             groups,
             to_root,
+            from_root,
             planes,
             emitters: Vec::new(),
             bounds,

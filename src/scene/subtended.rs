@@ -4,7 +4,7 @@
 //! that is turned away.
 
 use crate::math::frame::Frame;
-use crate::math::functions::{acos, asin, cos, sin};
+use crate::math::functions::{acos, asin, sin_cos};
 use crate::math::tolerance::{BALL_HORIZON, LEAST_SOLID_ANGLE, SIMILARITY};
 use crate::math::warp;
 use glam::{DVec2, DVec3};
@@ -49,17 +49,14 @@ impl SeenRectangle {
         let low = DVec2::new(to_corner.dot(x), to_corner.dot(y));
         let high = low + DVec2::new(lengths[0], lengths[1]);
 
-        // The faces of the pyramid from the viewer over the rectangle, and the angles between them.
-        let at = |x: f64, y: f64| DVec3::new(x, y, z);
-        let corners = [
-            at(low.x, low.y),
-            at(high.x, low.y),
-            at(high.x, high.y),
-            at(low.x, high.y),
-        ];
-        let face = |i: usize| corners[i].cross(corners[(i + 1) % 4]).try_normalize();
-        let faces = [face(0)?, face(1)?, face(2)?, face(3)?];
-        let angle = |i: usize| acos((-faces[i].dot(faces[(i + 1) % 4])).clamp(-1.0, 1.0));
+        // The faces of the pyramid from the viewer over the rectangle, round from low y: of their normals only the part along
+        // the axis is needed, since neighbours share no other.
+        let face = |edge: f64| edge / (edge * edge + z * z).sqrt();
+        let faces = [face(-low.y), face(high.x), face(high.y), face(-low.x)];
+        if faces.iter().any(|part| part.is_nan()) {
+            return None;
+        }
+        let angle = |i: usize| acos((-faces[i] * faces[(i + 1) % 4]).clamp(-1.0, 1.0));
         let k = TAU - angle(2) - angle(3);
         let solid_angle = angle(0) + angle(1) - k;
         (solid_angle >= LEAST_SOLID_ANGLE).then_some(Self {
@@ -68,8 +65,8 @@ impl SeenRectangle {
             low,
             high,
             z,
-            b0: faces[0].z,
-            b1: faces[2].z,
+            b0: faces[0],
+            b1: faces[2],
             k,
             solid_angle,
         })
@@ -84,7 +81,8 @@ impl SeenRectangle {
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         // The column of points with this x cuts off the share u[0] of the solid angle.
         let angle = u[0] * self.solid_angle + self.k;
-        let f = (cos(angle) * self.b0 - self.b1) / sin(angle);
+        let (sin, cos) = sin_cos(angle);
+        let f = (cos * self.b0 - self.b1) / sin;
         let c = (1.0 / (f * f + self.b0 * self.b0).sqrt())
             .copysign(f)
             .clamp(-1.0, 1.0);

@@ -3,7 +3,6 @@
 use super::Scene;
 use super::description::{MaterialId, OrganId};
 use super::group::{Group, Item, ItemKind, MeshShading, PlacedGroup, ShapeRecord};
-use super::plan::MAX_DEPTH;
 use super::query::{FIRST_PLANE, Hit};
 use crate::math::tolerance::{EDGE_MARGIN, EDGE_MARGIN_LIMIT, SHADOW_GAP, SPAWN_SAFETY, gamma};
 use crate::math::{PrimitiveId, Ray};
@@ -108,18 +107,28 @@ struct LocalPoint {
 impl LocalPoint {
     /// Carries the point out of a frame, given the map into it.
     fn leave(self, into: &DAffine3) -> Self {
-        let out = into.inverse();
+        self.leave_by(into, &into.inverse())
+    }
+
+    /// Carries the point out of a frame, given the maps into it and out of it.
+    fn leave_by(self, into: &DAffine3, out: &DAffine3) -> Self {
         let position = out.transform_point3(self.position);
         // The error made on the way out, and the error that carrying the result in again will make.
         let made = absolute(&out.matrix3) * self.position.abs() + out.translation.abs();
         let again = absolute(&into.matrix3) * position.abs() + into.translation.abs();
         let inside = self.error + again * gamma(4);
         let normal = |n: DVec3| (into.matrix3.transpose() * n).normalize();
+        let normal_g = normal(self.normal_g);
+        let normal_s = if self.normal_s == self.normal_g {
+            normal_g
+        } else {
+            normal(self.normal_s)
+        };
         Self {
             position,
             error: absolute(&out.matrix3) * inside + made * gamma(4),
-            normal_g: normal(self.normal_g),
-            normal_s: normal(self.normal_s),
+            normal_g,
+            normal_s,
             ..self
         }
     }
@@ -137,23 +146,28 @@ fn absolute(matrix: &DMat3) -> DMat3 {
 pub(super) struct Located<'s> {
     pub(super) group: &'s Group,
     pub(super) number: u32,
-    depth: usize,
-    path: [Option<(&'s Group, &'s PlacedGroup)>; MAX_DEPTH],
+    /// The instances on the way, each with the group that it is in. Hardly ever more than one, so no list for it.
+    outermost: Option<(&'s Group, &'s PlacedGroup)>,
+    deeper: Vec<(&'s Group, &'s PlacedGroup)>,
 }
 
 impl Located<'_> {
     /// The maps on the way in, each from one frame to the next, the first from the world.
     pub(super) fn maps(&self, to_root: &DAffine3) -> impl DoubleEndedIterator<Item = DAffine3> {
-        let inner = self.path[..self.depth]
+        std::iter::once(*to_root).chain(self.inner_maps())
+    }
+
+    /// The maps on the way in from the root's frame.
+    fn inner_maps(&self) -> impl DoubleEndedIterator<Item = DAffine3> {
+        self.outermost
             .iter()
-            .flatten()
-            .map(|(group, instance)| group.to_child(instance));
-        std::iter::once(*to_root).chain(inner)
+            .chain(&self.deeper)
+            .map(|(group, instance)| group.to_child(instance))
     }
 
     /// The organ of the outermost instance that has one.
     pub(super) fn instance_organ(&self) -> Option<OrganId> {
-        let path = self.path[..self.depth].iter().flatten();
+        let path = self.outermost.iter().chain(&self.deeper);
         let mut organs = path.map(|(_, instance)| instance.organ);
         let outermost = organs.find(OrganId::is_own);
         outermost.or(self.group.shape_of(self.number).instance_organ)
@@ -169,19 +183,20 @@ impl Scene {
         }
         let located = self.locate(hit.primitive);
         let shape = located.group.shape_of(located.number);
-        let near = self.carried_in(&located, ray.at(hit.t));
+        let near = || self.carried_in(&located, ray.at(hit.t));
         let group = located.group;
         let mut local = match group.places[located.number as usize].map(Item::kind) {
-            Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, &near),
-            Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, &near),
-            Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near),
+            Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, near),
+            Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, near),
+            Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near()),
             Some(ItemKind::Instance(_) | ItemKind::TwoInstances(_) | ItemKind::Block(_)) | None => {
                 unreachable!("invariant: only stored primitives are hit")
             }
         };
-        for map in located.maps(&self.to_root).rev() {
+        for map in located.inner_maps().rev() {
             local = local.leave(&map);
         }
+        let local = local.leave_by(&self.to_root, &self.from_root);
         finish(local, shape, located.instance_organ(), ray, hit)
     }
 
@@ -219,15 +234,19 @@ impl Scene {
         let mut located = Located {
             group: root,
             number: 0,
-            depth: 0,
-            path: [None; MAX_DEPTH],
+            outermost: None,
+            deeper: Vec::new(),
         };
         let mut number = primitive.0;
         while number >= located.group.places.len() as u64 {
             let instance = located.group.instance_of(number);
             number -= instance.first;
-            located.path[located.depth] = Some((located.group, instance));
-            located.depth += 1;
+            let step = (located.group, instance);
+            if located.outermost.is_none() {
+                located.outermost = Some(step);
+            } else {
+                located.deeper.push(step);
+            }
             located.group = &self.groups[instance.group as usize];
         }
         located.number = number as u32;
@@ -267,7 +286,7 @@ fn triangle_point(
     shape: &ShapeRecord,
     index: usize,
     hit: &Hit,
-    near: &CarriedIn,
+    near: impl FnOnce() -> CarriedIn,
 ) -> LocalPoint {
     let triangle = &group.triangles[index];
     let corners = triangle.corners();
@@ -291,11 +310,22 @@ fn triangle_point(
 }
 
 /// The weights of a triangle's corners at a hit, moved inwards where the hit is too near to an edge.
-fn inner_weights(corners: &[DVec3; 3], area: f64, hit: &Hit, near: &CarriedIn) -> [f64; 3] {
+fn inner_weights(
+    corners: &[DVec3; 3],
+    area: f64,
+    hit: &Hit,
+    near: impl FnOnce() -> CarriedIn,
+) -> [f64; 3] {
+    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    if weights.iter().all(|weight| *weight >= EDGE_MARGIN_LIMIT) {
+        // No margin reaches so far.
+        let sum = weights[0] + weights[1] + weights[2];
+        return weights.map(|weight| weight / sum);
+    }
+    let near = near();
     let edge = |corner: usize| corners[(corner + 2) % 3] - corners[(corner + 1) % 3];
     // Per corner: what share of its height over the opposite edge the margin is.
-    let margin = |corner| edge_margin(near, edge(corner), area);
-    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    let margin = |corner| edge_margin(&near, edge(corner), area);
     let weights: [f64; 3] = std::array::from_fn(|corner| weights[corner].max(margin(corner)));
     let sum = weights[0] + weights[1] + weights[2];
     weights.map(|weight| weight / sum)
@@ -326,15 +356,22 @@ fn quad_point(
     shape: &ShapeRecord,
     index: usize,
     hit: &Hit,
-    near: &CarriedIn,
+    near: impl FnOnce() -> CarriedIn,
 ) -> LocalPoint {
     let quad = &group.quads[index];
     let cross = quad.edges[0].cross(quad.edges[1]);
-    let inner = |share: f64, other: DVec3| {
-        let margin = edge_margin(near, other, cross.length());
-        share.clamp(margin, 1.0 - margin)
+    let is_inside = |share: f64| (EDGE_MARGIN_LIMIT..=1.0 - EDGE_MARGIN_LIMIT).contains(&share);
+    let uv = if is_inside(hit.u) && is_inside(hit.v) {
+        // No margin reaches so far.
+        DVec2::new(hit.u, hit.v)
+    } else {
+        let near = near();
+        let inner = |share: f64, other: DVec3| {
+            let margin = edge_margin(&near, other, cross.length());
+            share.clamp(margin, 1.0 - margin)
+        };
+        DVec2::new(inner(hit.u, quad.edges[1]), inner(hit.v, quad.edges[0]))
     };
-    let uv = DVec2::new(inner(hit.u, quad.edges[1]), inner(hit.v, quad.edges[0]));
     let (along_u, along_v) = (quad.edges[0] * uv.x, quad.edges[1] * uv.y);
     let normal_g = cross.normalize() * orientation(shape);
     LocalPoint {

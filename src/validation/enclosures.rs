@@ -205,6 +205,7 @@ fn ways() -> Vec<Check> {
                     max_depth: Some(depth.unsigned_abs()),
                     strategies,
                     roulette_after: after,
+                    guided: true,
                 };
                 Ok(Experiment::new(furnace.room(rho).scene()?, all_round()).by(path))
             }));
