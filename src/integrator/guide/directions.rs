@@ -84,8 +84,8 @@ impl Forest {
             below_y: [share(light[0], light[2]), share(light[1], light[3])],
             quarters: [0; 4],
         });
-        for i in 0..4 {
-            let is_large = light[i] > LARGEST_SHARE * total && quarter(i).len() >= FEWEST;
+        for (i, light) in light.into_iter().enumerate() {
+            let is_large = light > LARGEST_SHARE * total && quarter(i).len() >= FEWEST;
             if is_large && level + 1 < DEEPEST {
                 let grown = self.grow(quarter(i), total, level + 1);
                 self.nodes[number as usize].quarters[i] = grown;
