@@ -25,6 +25,10 @@
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American
 //! Statistician 37(3), 1983. <https://doi.org/10.1080/00031305.1983.10483115>
 //!
+//! # Christensen1999
+//! P. H. Christensen: Faster Photon Map Global Illumination. Journal of Graphics Tools 4(3), 1999.
+//! <https://doi.org/10.1080/10867651.1999.10487505>
+//!
 //! # Cigolle2014
 //! Z. Cigolle, S. Donow, D. Evangelakos, M. Mara, M. McGuire, Q. Meyer: A Survey of Efficient Representations for
 //! Independent Unit Vectors. Journal of Computer Graphics Techniques 3(2), 2014. <https://jcgt.org/published/0003/02/01/>
@@ -77,6 +81,10 @@
 //!
 //! # Heitz2019
 //! E. Heitz: A Low-Distortion Map Between Triangle and Square. 2019. <https://hal.science/hal-02073696>
+//!
+//! # HeyPurgathofer2002
+//! H. Hey, W. Purgathofer: Advanced Radiance Estimation for Photon Map Global Illumination. Computer Graphics Forum 21(3), 2002.
+//! <https://doi.org/10.1111/1467-8659.00695>
 //!
 //! # Higham2002
 //! N. J. Higham: Accuracy and Stability of Numerical Algorithms, second edition. SIAM, 2002.

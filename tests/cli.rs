@@ -219,7 +219,7 @@ fn senseless_wishes_are_usage_errors() {
         ("--fov 0", "more than 0"),
         ("--fov 180", "less than 180"),
         ("--threads 0", "1 to 1024"),
-        ("--renderer photon", "not built yet"),
+        ("--renderer radiosity", "not built yet"),
         ("--quality best", "draft"),
         ("--sun 0,95", "0 to 90"),
         ("--smaples 3", "--samples"),

@@ -75,4 +75,12 @@ pub enum RenderError {
         /// The picture so far, if every pixel already has a sample: a valid picture, only noisier.
         partial: Option<Box<FilmResult>>,
     },
+    /// More photons would have to be stored than memory was granted for.
+    #[error("{n} photons would have to be stored, more than the {most} there is memory for")]
+    TooManyPhotons {
+        /// How many there are.
+        n: u64,
+        /// How many may be.
+        most: u64,
+    },
 }

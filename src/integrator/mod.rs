@@ -16,11 +16,13 @@ pub mod medium;
 pub mod mis;
 pub mod path;
 pub mod photon;
+pub mod photon_map;
 pub mod raytracer;
 pub mod sources;
 
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
 pub use path::Path;
+pub use photon_map::PhotonMapping;
 pub use raytracer::Raytracer;
 
 use crate::color::Rgb;
@@ -56,6 +58,8 @@ pub enum Method {
     Path(Path),
     /// Standard ray tracing: direct light, mirrors and glass.
     Raytracer(Raytracer),
+    /// Photon mapping: one solve for all cameras.
+    Photon(PhotonMapping),
 }
 
 impl Method {
@@ -65,6 +69,7 @@ impl Method {
         match self {
             Self::Path(path) => path,
             Self::Raytracer(raytracer) => raytracer,
+            Self::Photon(photon_mapping) => photon_mapping,
         }
     }
 }

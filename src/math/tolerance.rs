@@ -191,3 +191,23 @@ pub const BESIDE: f64 = 1e-6;
 ///
 /// Less is not seen as one; much less and rounding would crease smooth seams. Used by [`crate::geometry::curved`].
 pub const CREASE: f64 = 4e-5;
+
+/// Radius of the smallest kernel of photon mapping, as a share of the scene's diagonal.
+///
+/// Positions of photons are stored with 24 bits, an error of 10⁻⁷ of the scene; the kernel tells photons on its plane from others
+/// to a tenth of its radius. Ten times smaller would begin to lose photons of the plane itself; ten times larger would blur
+/// what 10⁸ photons show. Used by [`crate::integrator::photon_map`].
+pub const SMALLEST_KERNEL: f64 = 1e-5;
+
+/// Radius of the largest kernel that is chosen automatically, as a share of the scene's diagonal.
+///
+/// A kernel that is larger would show no shape of indirect light at all; with fewer photons than it needs the picture is noisy
+/// instead. Mitsuba's default too. Used by [`crate::integrator::photon_map`].
+pub const LARGEST_KERNEL: f64 = 0.05;
+
+/// By how much boxes that photons are aimed at are widened, as a share of their distance from the origin and of their size.
+///
+/// Their corners went through a few roundings in `f64`, 10⁻¹⁵ each. Ten times larger or smaller would change nothing that can be
+/// measured; ten million times smaller would let photons miss the rim of what they are aimed at. Used by
+/// [`crate::integrator::photon`].
+pub const TARGET_SLACK: f64 = 1e-9;

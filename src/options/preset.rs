@@ -6,9 +6,13 @@ use super::{Options, Origin};
 /// The values of a quality. `preview` is the defaults themselves.
 const fn values(quality: Quality) -> &'static [(&'static str, &'static str)] {
     match quality {
-        Quality::Draft => &[("samples", "8"), ("max-depth", "6")],
+        Quality::Draft => &[
+            ("samples", "8"),
+            ("max-depth", "6"),
+            ("global-photons", "100000"),
+        ],
         Quality::Preview => &[],
-        Quality::Final => &[("samples", "512")],
+        Quality::Final => &[("samples", "512"), ("global-photons", "10000000")],
     }
 }
 

@@ -4,8 +4,8 @@ use super::lighting::{Fraction, PlotSize};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
 use super::value::{
-    Brightness, Bytes, Daylight, GridSize, Ground, Quality, Renderer, Seconds, Size, Threads,
-    Turbidity,
+    Area, Brightness, Bytes, Daylight, GridSize, Ground, PhotonCount, Quality, Renderer, Seconds,
+    Size, Threads, Turbidity,
 };
 use crate::diag::nearest;
 use crate::light::sun_position::{Moment, Place};
@@ -225,7 +225,7 @@ options! {
     /// Vertical field of view in degrees
     fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
 
-    /// Method that computes the light: `path` (path tracing: all light) or `raytracer` (direct light, mirrors and glass: fast)
+    /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap) or `raytracer` (direct light, mirrors and glass: fast)
     renderer: Renderer = "path", "renderer", "NAME", Render, View, PICTURING;
     /// Preset: `draft`, `preview` or `final`
     quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
@@ -237,8 +237,14 @@ options! {
     max_depth: Option<u32> = "none", "max-depth", "N", Render, View, LIGHTING;
     /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
     supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
-    /// How often the ray tracer follows a ray through mirrors and glass
+    /// How often the ray tracer and photon mapping follow a ray through mirrors and glass
     recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, PICTURING;
+    /// Photons that photon mapping sends to all surfaces
+    global_photons: PhotonCount = "1000000", "global-photons", "N", Render, View, PICTURING;
+    /// Photons that it sends to mirrors and glass for caustics; `auto`: a million where there are any
+    caustic_photons: Option<PhotonCount> = "auto", "caustic-photons", "N", Render, View, PICTURING;
+    /// Area of surface over which photons are averaged, in square metres (GroIMP's *Photon area*); `auto`: one that holds about 100
+    photon_area: Option<Area> = "auto", "photon-area", "M2", Render, View, PICTURING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says

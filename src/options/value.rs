@@ -26,6 +26,37 @@ pub enum Renderer {
     Path,
     /// Standard ray tracing: direct light, and what mirrors and glass show of it.
     Raytracer,
+    /// Photon mapping: light is followed once from its sources and stored, for every camera.
+    Photon,
+}
+
+/// How many photons, 0 to 10⁹.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhotonCount(pub u64);
+
+/// The most photons that may be asked for.
+const MOST_PHOTONS: u64 = 1_000_000_000;
+
+impl OptionValue for PhotonCount {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.replace('_', "").parse() {
+            Ok(n) if n <= MOST_PHOTONS => Ok(Self(n)),
+            _ => Err("a whole number from 0 to 1000000000".into()),
+        }
+    }
+}
+
+/// An area in square metres, more than 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Area(pub f64);
+
+impl OptionValue for Area {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.parse::<f64>() {
+            Ok(area) if area > 0.0 && area.is_finite() => Ok(Self(area)),
+            _ => Err("a number of square metres greater than 0".into()),
+        }
+    }
 }
 
 /// How many samples a pixel has along each side.
@@ -123,10 +154,12 @@ impl OptionValue for Renderer {
         match text {
             "path" => Ok(Self::Path),
             "raytracer" => Ok(Self::Raytracer),
-            "photon" | "radiosity" => {
-                Err("`path` or `raytracer` (the others are not built yet in this version)".into())
-            }
-            _ => Err("`path` or `raytracer`".into()),
+            "photon" => Ok(Self::Photon),
+            "radiosity" => Err(
+                "`path`, `raytracer` or `photon` (radiosity is not built yet in this version)"
+                    .into(),
+            ),
+            _ => Err("`path`, `raytracer` or `photon`".into()),
         }
     }
 }
@@ -419,7 +452,7 @@ mod tests {
         assert!(Bytes::parse("é").is_err() && Bytes::parse("").is_err());
         assert!(Angle::parse("180").is_err() && Angle::parse("nan").is_err());
         assert!(
-            Renderer::parse("photon")
+            Renderer::parse("radiosity")
                 .unwrap_err()
                 .contains("not built yet")
         );

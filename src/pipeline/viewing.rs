@@ -1,6 +1,7 @@
 //! Preparing a scene for a method of light transport, and looking at it.
 
 use super::audience::Audience;
+use super::budget;
 use super::exposing;
 use super::failure::Failure;
 use super::report::Effort;
@@ -8,8 +9,10 @@ use super::world::World;
 use crate::camera::Camera;
 use crate::film::{Filter, LinearImage, tone};
 use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
+use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
-    CancelToken, Method, Path, Progress, RadianceEstimator, Raytracer, RenderContext, RenderError,
+    CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Raytracer,
+    RenderContext, RenderError,
 };
 use crate::options::Options;
 use crate::options::value::{GridSize, Renderer};
@@ -64,13 +67,17 @@ impl Viewing<'_> {
     /// If it was stopped.
     pub fn prepare<'s>(&self, scene: &'s Scene) -> Result<Prepared<'s>, Failure> {
         let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
-        let method = method(self.options);
+        let mut method = method(self.options);
+        if let Method::Photon(photon_mapping) = &mut method {
+            let memory = budget::memory(self.world, self.options);
+            photon_mapping.most_stored = memory / BYTES_PER_PHOTON;
+        }
         let prepared = method
             .integrator()
             .prepare(scene, &self.context(self.cancel, &report));
         match prepared {
             Ok(estimator) => Ok(Prepared { estimator }),
-            Err(RenderError::Cancelled { .. }) => Err(Failure::Stopped),
+            Err(error) => Err(failure(&error)),
         }
     }
 
@@ -113,7 +120,7 @@ impl Viewing<'_> {
                 let is_subject = exposing::subject(scene, camera, image.width, image.height);
                 Ok(tone::auto_exposure(&image, &is_subject))
             }
-            Err(RenderError::Cancelled { .. }) => Err(Failure::Stopped),
+            Err(error) => Err(failure(&error)),
         }
     }
 
@@ -146,7 +153,7 @@ impl Viewing<'_> {
                 let is_whole = self.options.time.value.is_some() && !self.cancel.is_cancelled();
                 Ok(shot(&result, is_whole))
             }
-            Err(RenderError::Cancelled { partial: None }) => Err(Failure::Stopped),
+            Err(error) => Err(failure(&error)),
         }
     }
 
@@ -246,6 +253,23 @@ fn method(options: &Options) -> Method {
             light_samples: options.light_samples.value.get(),
             ..Raytracer::default()
         }),
+        Renderer::Photon => Method::Photon(PhotonMapping {
+            global_photons: options.global_photons.value.0,
+            caustic_photons: options.caustic_photons.value.map(|photons| photons.0),
+            photon_area: options.photon_area.value.map(|area| area.0),
+            max_depth: options.recursion_depth.value,
+            ..PhotonMapping::default()
+        }),
+    }
+}
+
+fn failure(error: &RenderError) -> Failure {
+    match error {
+        RenderError::Cancelled { .. } => Failure::Stopped,
+        RenderError::TooManyPhotons { n, most } => Failure::World(format!(
+            "{n} photons would have to be stored, and there is memory for {most}: use fewer `--global-photons` or more \
+             `--max-memory`"
+        )),
     }
 }
 

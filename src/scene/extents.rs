@@ -3,9 +3,11 @@
 use super::Scene;
 use super::group::{Group, Item, ItemKind, ShapeRecord};
 use super::query::{FIRST_PLANE, Hit};
+use crate::geometry::unit::UnitShape;
 use crate::material::Material;
-use crate::math::Bounds3;
+use crate::math::{Bounds3, PrimitiveId};
 use glam::{DAffine3, DVec3};
+use std::f64::consts::PI;
 
 /// Where the surfaces of some materials are.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +17,33 @@ pub struct Extents {
     /// Whether an infinite plane is among them.
     pub has_planes: bool,
 }
+
+/// How large the surface is that a primitive belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// A flat or nearly flat shape of few primitives: a leaf.
+    Flat {
+        /// Its first primitive, which names it.
+        first: PrimitiveId,
+        /// Area of one side, m².
+        area: f64,
+        /// Diagonal of its box, metres.
+        size: f64,
+    },
+    /// A ball, frustum or box; so far from any of its points, in metres, its surface is about flat where it is not an edge.
+    Body(f64),
+    /// Anything else.
+    Large,
+}
+
+/// Primitives of a shape that are looked at one by one.
+const FEW: usize = 64;
+
+/// Share of its radius over which a round surface counts as flat: its normals turn by 24°.
+const FLAT_SHARE: f64 = 0.4;
+
+/// Cosine between normals of primitives that count as one flat piece.
+const NEARLY_FLAT: f64 = 0.9;
 
 impl Hit {
     /// Whether an infinite plane was hit.
@@ -71,6 +100,96 @@ impl Scene {
             boxes,
             has_planes: self.planes.iter().any(|plane| wanted(&plane.shape)),
         }
+    }
+}
+
+impl Scene {
+    /// How large the surface is that a primitive, the result of a query, belongs to.
+    #[must_use]
+    pub fn piece(&self, primitive: PrimitiveId) -> Piece {
+        if primitive.0 >= FIRST_PLANE {
+            return Piece::Large;
+        }
+        let located = self.locate(primitive);
+        let maps = located.maps(&self.to_root);
+        let to_world = maps.fold(DAffine3::IDENTITY, |all, map| all * map.inverse());
+        let (group, number) = (located.group, located.number);
+        let after = group.shapes.partition_point(|shape| shape.first <= number);
+        let first = group.shapes[after.saturating_sub(1)].first;
+        let next = group.shapes.get(after);
+        let end = next.map_or(group.places.len(), |next| next.first as usize);
+        let items = &group.places[first as usize..end];
+        if let [Some(item)] = items
+            && let ItemKind::Solid(index) = item.kind()
+            && group.solids[index].form != UnitShape::Disk
+        {
+            let solid = &group.solids[index];
+            return Piece::Body(flat_extent(
+                solid.form,
+                &(to_world * solid.to_unit.inverse()),
+            ));
+        }
+        if items.len() > FEW {
+            return Piece::Large;
+        }
+        let flat = |item: &Item| vector_area(group, *item, &to_world);
+        let Some(areas) = items.iter().flatten().map(flat).collect::<Option<Vec<_>>>() else {
+            return Piece::Large;
+        };
+        let normal = areas
+            .first()
+            .map_or(DVec3::ZERO, |area| area.normalize_or_zero());
+        if areas
+            .iter()
+            .any(|area| area.dot(normal) < NEARLY_FLAT * area.length())
+        {
+            return Piece::Large;
+        }
+        let boxes = items
+            .iter()
+            .flatten()
+            .map(|item| item_box(group, *item, &to_world));
+        let bounds = boxes.fold(Bounds3::EMPTY, |all, one| all.union(&one));
+        Piece::Flat {
+            first: PrimitiveId(primitive.0 - u64::from(number - first)),
+            area: areas.iter().map(|area| area.length()).sum(),
+            size: bounds.diagonal().length(),
+        }
+    }
+}
+
+/// How far from any of its points a unit shape, placed in the world, is about flat, metres.
+fn flat_extent(form: UnitShape, to_world: &DAffine3) -> f64 {
+    let m = to_world.matrix3;
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(DVec3::length);
+    match form {
+        UnitShape::Sphere => FLAT_SHARE * x.min(y).min(z),
+        UnitShape::Frustum(_) | UnitShape::Disk => FLAT_SHARE * x.min(y),
+        // The middle one: a wall is flat however thin it is.
+        UnitShape::Cube => x.max(y).min(x.max(z)).min(y.max(z)),
+    }
+}
+
+/// Area of a flat primitive times its normal; `None` of others.
+fn vector_area(group: &Group, item: Item, to_world: &DAffine3) -> Option<DVec3> {
+    let place = |edge: DVec3| to_world.transform_vector3(edge);
+    match item.kind() {
+        ItemKind::Triangle(index) => {
+            let [a, b, c] = group.triangles[index].corners();
+            Some(place(b - a).cross(place(c - a)) * 0.5)
+        }
+        ItemKind::Quad(index) => {
+            let [a, b] = group.quads[index].edges.map(place);
+            Some(a.cross(b))
+        }
+        ItemKind::Solid(index) if group.solids[index].form == UnitShape::Disk => {
+            let m = (*to_world * group.solids[index].to_unit.inverse()).matrix3;
+            Some(m.x_axis.cross(m.y_axis) * PI)
+        }
+        ItemKind::Solid(_)
+        | ItemKind::Instance(_)
+        | ItemKind::TwoInstances(_)
+        | ItemKind::Block(_) => None,
     }
 }
 
@@ -162,6 +281,51 @@ mod tests {
         }
         assert!(scene(1).extents_of(|_| true, 100).has_planes);
         assert_eq!(scene(1).plane_normals().collect::<Vec<_>>(), [DVec3::Z]);
+    }
+
+    #[test]
+    fn pieces_are_measured_in_the_world() {
+        let stretch = DAffine3::from_scale(DVec3::new(2.0, 3.0, 0.5));
+        let square = Shape::Parallelogram {
+            corner: DVec3::ZERO,
+            edge_u: DVec3::X,
+            edge_v: DVec3::Y,
+        };
+        let shape = |shape, to_group| PlacedShape {
+            shape,
+            to_group,
+            material: MaterialId(0),
+            organ: OrganId(0),
+        };
+        let scene = Scene::build(SceneDescription {
+            materials: vec![Material::default()],
+            groups: vec![Group {
+                shapes: vec![
+                    shape(square, stretch),
+                    shape(
+                        Shape::Disk { radius: 2.0 },
+                        DAffine3::from_translation(DVec3::Z),
+                    ),
+                    shape(Shape::Sphere { radius: 1.0 }, stretch),
+                ],
+                instances: vec![],
+            }],
+            root: Some(GroupId(0)),
+            ..SceneDescription::default()
+        })
+        .unwrap();
+        let Piece::Flat { first, area, size } = scene.piece(PrimitiveId(0)) else {
+            panic!()
+        };
+        assert_eq!(first, PrimitiveId(0));
+        assert!((area - 6.0).abs() < 1e-9 && (size - 13.0_f64.sqrt()).abs() < 1e-9);
+        let Piece::Flat { area, .. } = scene.piece(PrimitiveId(1)) else {
+            panic!()
+        };
+        assert!((area - 4.0 * PI).abs() < 1e-9);
+        assert!(
+            matches!(scene.piece(PrimitiveId(2)), Piece::Body(flat) if (flat - 0.2).abs() < 1e-9)
+        );
     }
 
     #[test]

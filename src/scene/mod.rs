@@ -60,7 +60,7 @@ mod walk;
 
 pub use emitter::{Emitter, EmitterId, EmitterSample, TowardSample};
 pub use error::{Problem, SceneError};
-pub use extents::Extents;
+pub use extents::{Extents, Piece};
 pub use query::Hit;
 pub use surface::SurfacePoint;
 

@@ -151,8 +151,7 @@ impl Interception {
             let ledger = trace(emission, &set, &context, visitor, |tally| {
                 tally.join(&mut bins, &mut sensed);
             });
-            let ledger =
-                ledger.map_err(|RenderError::Cancelled { .. }| InterceptionError::Cancelled)?;
+            let ledger = ledger.map_err(|_: RenderError| InterceptionError::Cancelled)?;
             sums.add_batch(&bins, sensors, &sensed, &ledger);
         }
         sums.end_round(n_batches, n);

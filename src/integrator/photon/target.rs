@@ -8,15 +8,13 @@
 
 use crate::math::frame::Frame;
 use crate::math::functions::{asin, cos};
+use crate::math::tolerance::TARGET_SLACK;
 use crate::math::{Bounds3, warp};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// Targets told apart; more are put together with their neighbours. Each photon asks all of them.
 const MOST: usize = 32;
-
-/// By how much boxes are widened, as a share of their distance from the origin and their size: their corners are rounded.
-const SLACK: f64 = 1e-9;
 
 /// Something to aim at.
 #[derive(Clone, Copy, Debug)]
@@ -65,8 +63,8 @@ struct Cone {
 
 impl Target {
     fn new(bounds: Bounds3, density: f64) -> Self {
-        let slack = SLACK * (bounds.min.abs().max(bounds.max.abs()).max_element());
-        let slack = DVec3::splat(slack) + bounds.diagonal() * SLACK;
+        let slack = TARGET_SLACK * (bounds.min.abs().max(bounds.max.abs()).max_element());
+        let slack = DVec3::splat(slack) + bounds.diagonal() * TARGET_SLACK;
         let bounds = Bounds3 {
             min: bounds.min - slack,
             max: bounds.max + slack,

@@ -1,0 +1,192 @@
+//! A photon map made ready for questions: irradiance precomputed at some photons' places.
+//!
+//! Source: [`Christensen1999`](crate::references#christensen1999), with the places thinned out to a fraction of the kernel's radius,
+//! whatever the number of photons, and with interpolation between them instead of the nearest one. A question then costs a search
+//! among few samples, however many photons there are.
+
+use super::estimate::{self, Hidden};
+use super::grid::{Grid, cell};
+use super::radius::kernel_radius;
+use super::stored::{Stored, facing};
+use crate::color::Rgb;
+use crate::math::PrimitiveId;
+use crate::math::frame::Frame;
+use crate::scene::{Piece, Scene, SurfacePoint};
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// Distance between samples, in radii of the kernel.
+const SPACING: f64 = 1.0 / 3.0;
+
+/// How far a sample is used, in spacings: every point of a cell is that near to the sample in the cell.
+const USE: f64 = 2.0;
+
+/// Least cosine between the normals of a point and of a sample it takes light from.
+const SAME_NORMAL: f64 = 0.9;
+
+/// How far from the tangent plane of a point a sample may lie, in spacings.
+const THICKNESS: f64 = 0.3;
+
+/// Irradiance at one place.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    position: Vec3,
+    normal: Vec3,
+    irradiance: Vec3,
+    /// Radius of its kernel, metres, and what is hidden from it there.
+    radius: f32,
+    hidden: Hidden,
+}
+
+impl Sample {
+    /// Whether something stands between it and the point this far from it.
+    fn is_hidden(&self, from: DVec3) -> bool {
+        if self.hidden.is_none() {
+            return false;
+        }
+        let local = Frame::from_normal(self.normal.as_dvec3()).to_local(from);
+        self.hidden.holds(local.truncate() / f64::from(self.radius))
+    }
+}
+
+/// Irradiance of one side of a small flat piece: by its number and the side (front first).
+#[derive(Clone, Copy, Debug)]
+struct PieceLight {
+    key: (PrimitiveId, bool),
+    irradiance: Rgb,
+}
+
+/// The light of one map.
+#[derive(Debug)]
+pub(super) struct IrradianceMap {
+    center: DVec3,
+    radius: f64,
+    spacing: f64,
+    samples: Grid<Sample>,
+    /// Sorted by key.
+    pieces: Vec<PieceLight>,
+}
+
+impl IrradianceMap {
+    /// Makes the photons of a scene ready. `area` is that of the kernel in m², or `None` where it is to be chosen; `center` what
+    /// their positions are relative to.
+    pub(super) fn new(
+        scene: &Scene,
+        photons: Vec<Stored>,
+        center: DVec3,
+        area: Option<f64>,
+    ) -> Option<Self> {
+        let size = scene.bounds().diagonal().length();
+        let radius = kernel_radius(&photons, area, size)?;
+        let (on_pieces, photons): (Vec<Stored>, Vec<Stored>) = photons
+            .into_par_iter()
+            .partition(|photon| small_piece(scene, photon, radius).is_some());
+        let pieces = piece_lights(scene, &on_pieces, radius);
+        let spacing = radius * SPACING;
+        let places = thinned(&photons, spacing);
+        let photons = Grid::new(photons, radius, Stored::position);
+        let sample = |place: &Stored| {
+            // As the sample will have them, so that what is hidden is found again in the same frame.
+            let (position, normal) = (place.position(), place.normal().as_vec3().as_dvec3());
+            let own = radius.min(place.flat_extent());
+            let at = (position, normal);
+            let (light, hidden) = estimate::irradiance(scene, &photons, center, at, own);
+            Sample {
+                position: position.as_vec3(),
+                normal: normal.as_vec3(),
+                irradiance: DVec3::from_array(light.to_array()).as_vec3(),
+                radius: own as f32,
+                hidden,
+            }
+        };
+        let samples: Vec<Sample> = places.par_iter().map(sample).collect();
+        Some(Self {
+            center,
+            radius,
+            spacing,
+            samples: Grid::new(samples, USE * spacing, |sample| sample.position.as_dvec3()),
+            pieces,
+        })
+    }
+
+    /// Irradiance at a point, which lies on this piece, on the side that `w` points to, W/m² per channel.
+    pub(super) fn irradiance(&self, point: &SurfacePoint, piece: &Piece, w: DVec3) -> Rgb {
+        let normal = facing(point.normal_g, w);
+        if let Piece::Flat { first, size, .. } = *piece
+            && size <= 2.0 * self.radius
+        {
+            let key = (first, normal.dot(point.normal_g) < 0.0);
+            let found = self.pieces.binary_search_by_key(&key, |piece| piece.key);
+            return found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance);
+        }
+        let position = point.position - self.center;
+        let reach = USE * self.spacing;
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        self.samples.near(position, |sample| {
+            let to = sample.position.as_dvec3() - position;
+            let share = to.length_squared() / (reach * reach);
+            let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
+                && to.dot(normal).abs() <= THICKNESS * self.spacing;
+            if share < 1.0 && is_same && !sample.is_hidden(-to) {
+                let weight = (1.0 - share) * (1.0 - share);
+                sum += sample.irradiance.as_dvec3() * weight;
+                weights += weight;
+            }
+        });
+        if weights > 0.0 {
+            Rgb::from_array((sum / weights).to_array())
+        } else {
+            Rgb::BLACK
+        }
+    }
+}
+
+/// The flat piece that a photon lies on and its area, if that is smaller than the kernel.
+fn small_piece(scene: &Scene, photon: &Stored, radius: f64) -> Option<(PrimitiveId, f64)> {
+    match scene.piece(photon.piece()?) {
+        Piece::Flat { first, area, size } if size <= 2.0 * radius => Some((first, area)),
+        Piece::Flat { .. } | Piece::Body(_) | Piece::Large => None,
+    }
+}
+
+/// All light of each side of the small pieces, over their areas.
+fn piece_lights(scene: &Scene, photons: &[Stored], radius: f64) -> Vec<PieceLight> {
+    let mut found: Vec<(PrimitiveId, bool, Rgb)> = photons
+        .par_iter()
+        .filter_map(|photon| {
+            let (first, area) = small_piece(scene, photon, radius)?;
+            Some((first, !photon.is_front(), photon.power() / area))
+        })
+        .collect();
+    // Stable: photons of a side stay in their order, so their sum is always the same.
+    found.par_sort_by_key(|(first, is_back, _)| (*first, *is_back));
+    let sides = found.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+    let light = |side: &[(PrimitiveId, bool, Rgb)]| PieceLight {
+        key: (side[0].0, side[0].1),
+        irradiance: side.iter().map(|(_, _, irradiance)| *irradiance).sum(),
+    };
+    sides.map(light).collect()
+}
+
+/// Photons whose places are sampled: one of each cell of this width and of each of six main directions of the normal: the first.
+fn thinned(photons: &[Stored], width: f64) -> Vec<Stored> {
+    let mut keys: Vec<([i32; 3], u8, u32)> = photons
+        .par_iter()
+        .enumerate()
+        .map(|(at, photon)| {
+            let normal = photon.normal();
+            let axis = normal.abs().max_position();
+            let direction = 2 * axis as u8 + u8::from(normal[axis] < 0.0);
+            (
+                cell(photon.position(), width).to_array(),
+                direction,
+                at as u32,
+            )
+        })
+        .collect();
+    keys.par_sort_unstable();
+    keys.dedup_by_key(|(cell, direction, _)| (*cell, *direction));
+    keys.iter()
+        .map(|(_, _, at)| photons[*at as usize])
+        .collect()
+}

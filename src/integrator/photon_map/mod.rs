@@ -1,0 +1,175 @@
+//! Photon mapping: light is followed once from its sources, then every camera looks at what was stored.
+//!
+//! Source: [`Jensen1996`](crate::references#jensen1996) and [`Jensen2001`](crate::references#jensen2001). What is stored and what not:
+//!
+//! - Direct light is never stored. Each view asks the [sources](super::sources) for it.
+//! - The *global* map holds light that has been scattered; the *caustic* map light that has only been mirrored or refracted on its way,
+//!   for which photons are aimed at specular surfaces alone. Where no caustic photons are wanted the global map holds both.
+//! - Photons are stored on matt surfaces only. What mirrors, glass and glossy surfaces show is followed from the camera.
+//!
+//! Nothing that is stored depends on a camera. Light that passed panes and alpha straight on counts as direct.
+//!
+//! ```text
+//! stored      which photons are stored              radius      how large the kernel is
+//! grid        photons and samples by place          estimate    irradiance over the real area
+//! irradiance  precomputed, asked by views           view        from the camera to the maps
+//! ```
+//! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
+//! light other surfaces only as direct light that rays from the camera meet in mirrors.
+
+mod estimate;
+mod grid;
+mod irradiance;
+mod radius;
+mod stored;
+mod view;
+
+use super::medium::Bodies;
+use super::photon::{Aim, Emission, Photons, trace};
+use super::sources::Sources;
+use super::{Integrator, RadianceEstimator, RenderContext, RenderError};
+use crate::material::Material;
+use crate::math::rng;
+use crate::scene::Scene;
+use glam::DVec3;
+use irradiance::IrradianceMap;
+use stored::{Collector, Stored, Wanted};
+use view::View;
+
+/// Bytes that a stored photon takes while the maps are made: itself, its copies in lists that are joined and sorted.
+pub const BYTES_PER_PHOTON: u64 = 3 * size_of::<Stored>() as u64;
+
+/// Scatterings after which a photon is given up; chance ends almost all long before.
+const LONGEST_PATH: u32 = 1024;
+
+/// Photons for caustics where their number is not given.
+const CAUSTIC_PHOTONS: u64 = 1_000_000;
+
+/// Settings of photon mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotonMapping {
+    /// Photons sent to all surfaces.
+    pub global_photons: u64,
+    /// Photons sent to mirrors and glass; `None`: a million where there are any.
+    pub caustic_photons: Option<u64>,
+    /// Area of the kernel, m²; `None`: by the number of photons.
+    pub photon_area: Option<f64>,
+    /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
+    pub max_depth: u32,
+    /// Photons that may be stored.
+    pub most_stored: u64,
+}
+
+impl Default for PhotonMapping {
+    fn default() -> Self {
+        Self {
+            global_photons: 1_000_000,
+            caustic_photons: None,
+            photon_area: None,
+            max_depth: 8,
+            most_stored: u64::from(u32::MAX - 1),
+        }
+    }
+}
+
+/// The maps of a scene.
+#[derive(Debug, Default)]
+struct Maps {
+    global: Option<IrradianceMap>,
+    caustic: Option<IrradianceMap>,
+}
+
+impl Integrator for PhotonMapping {
+    fn prepare<'s>(
+        &self,
+        scene: &'s Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        Ok(Box::new(View {
+            scene,
+            sources: Sources::new(scene),
+            bodies: Bodies::new(scene),
+            maps: self.solve(scene, context)?,
+            max_depth: self.max_depth,
+        }))
+    }
+}
+
+impl PhotonMapping {
+    /// Photons for caustics in this scene: none where nothing is specular.
+    #[must_use]
+    pub fn caustic_photons_of(&self, scene: &Scene) -> u64 {
+        let is_specular = scene.materials().iter().any(Material::is_specular);
+        match self.caustic_photons {
+            _ if !is_specular => 0,
+            Some(n) => n,
+            None => CAUSTIC_PHOTONS,
+        }
+    }
+
+    fn solve(&self, scene: &Scene, context: &RenderContext<'_>) -> Result<Maps, RenderError> {
+        let n_caustic = self.caustic_photons_of(scene);
+        let wanted = if n_caustic == 0 {
+            Wanted::Indirect
+        } else {
+            Wanted::IndirectWithoutCaustics
+        };
+        Ok(Maps {
+            global: self.map(scene, wanted, self.global_photons, context)?,
+            caustic: self.map(scene, Wanted::Caustics, n_caustic, context)?,
+        })
+    }
+
+    /// Follows `n` photons and makes those that are wanted ready.
+    fn map(
+        &self,
+        scene: &Scene,
+        wanted: Wanted,
+        n: u64,
+        context: &RenderContext<'_>,
+    ) -> Result<Option<IrradianceMap>, RenderError> {
+        if n == 0 {
+            return Ok(None);
+        }
+        let aim = match wanted {
+            Wanted::Caustics => Aim::Specular,
+            Wanted::Indirect | Wanted::IndirectWithoutCaustics => Aim::Everything,
+        };
+        let bounds = scene.bounds();
+        let center = if bounds.is_empty() {
+            DVec3::ZERO
+        } else {
+            bounds.center()
+        };
+        let collector = || Collector {
+            scene,
+            wanted,
+            center,
+            photons: Vec::new(),
+        };
+        let mut stored: Vec<Stored> = Vec::new();
+        let mut n_stored = 0;
+        let join = |block: Collector<'_>| {
+            n_stored += block.photons.len() as u64;
+            if n_stored <= self.most_stored {
+                stored.extend(block.photons);
+            }
+        };
+        let seed = rng::hash(&[context.seed, aim as u64]);
+        let photons = Photons::all(n, seed, LONGEST_PATH);
+        trace(
+            &Emission::new(scene, aim),
+            &photons,
+            context,
+            collector,
+            join,
+        )?;
+        if n_stored > self.most_stored {
+            return Err(RenderError::TooManyPhotons {
+                n: n_stored,
+                most: self.most_stored,
+            });
+        }
+        Ok(IrradianceMap::new(scene, stored, center, self.photon_area))
+    }
+}

@@ -1,0 +1,167 @@
+//! Photons that have arrived, and who stores which of them.
+
+use crate::color::Rgb;
+use crate::integrator::photon::{History, Onward, PhotonHit, Visitor};
+use crate::material::Optics;
+use crate::math::PrimitiveId;
+use crate::scene::{Piece, Scene};
+use glam::{DVec3, Vec3};
+
+/// A photon on a matt surface, in 40 bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stored {
+    /// Relative to the middle of the scene.
+    position: Vec3,
+    /// Unit normal of the side that it met; 16 bits per coordinate are good to 0.002°.
+    normal: [i16; 3],
+    kind: Kind,
+    is_front: bool,
+    power: Vec3,
+    /// The number of a flat piece in two halves, or how far a body is flat.
+    piece: [u32; 2],
+}
+
+/// What it lies on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Kind {
+    Flat,
+    Body,
+    Large,
+}
+
+impl Stored {
+    fn new(hit: &PhotonHit<'_>, center: DVec3, on: Piece) -> Self {
+        // Alpha is in the scattering that the picture multiplies with; the light itself is what arrives before alpha.
+        let power = hit.power / hit.optics.alpha;
+        let normal = facing(hit.point.normal_g, hit.wo);
+        let (kind, piece) = match on {
+            Piece::Flat { first, .. } => (Kind::Flat, [(first.0 >> 32) as u32, first.0 as u32]),
+            Piece::Body(flat) => (Kind::Body, [0, (flat as f32).to_bits()]),
+            Piece::Large => (Kind::Large, [0, 0]),
+        };
+        Self {
+            position: (hit.point.position - center).as_vec3(),
+            normal: (normal * f64::from(i16::MAX))
+                .round()
+                .to_array()
+                .map(|c| c as i16),
+            kind,
+            is_front: hit.point.is_front,
+            power: DVec3::from_array(power.to_array()).as_vec3(),
+            piece,
+        }
+    }
+
+    /// A photon for tests, on a large surface.
+    #[cfg(test)]
+    pub(super) fn at(position: DVec3, normal: DVec3, power: f64) -> Self {
+        Self {
+            position: position.as_vec3(),
+            normal: (normal * f64::from(i16::MAX))
+                .round()
+                .to_array()
+                .map(|c| c as i16),
+            kind: Kind::Large,
+            is_front: true,
+            power: Vec3::splat(power as f32),
+            piece: [0, 0],
+        }
+    }
+
+    /// Where it is, relative to the middle of the scene.
+    pub(super) fn position(&self) -> DVec3 {
+        self.position.as_dvec3()
+    }
+
+    /// Normal of the side that it met.
+    pub(super) fn normal(&self) -> DVec3 {
+        let [x, y, z] = self.normal.map(f64::from);
+        DVec3::new(x, y, z).normalize_or(DVec3::Z)
+    }
+
+    /// W per channel.
+    pub(super) fn power(&self) -> Rgb {
+        Rgb::from_array(self.power.as_dvec3().to_array())
+    }
+
+    /// Whether it met the front.
+    pub(super) fn is_front(&self) -> bool {
+        self.is_front
+    }
+
+    /// The flat piece that it lies on.
+    pub(super) fn piece(&self) -> Option<PrimitiveId> {
+        let [high, low] = self.piece.map(u64::from);
+        (self.kind == Kind::Flat).then_some(PrimitiveId(high << 32 | low))
+    }
+
+    /// How far the body that it lies on is about flat, metres; infinite on others.
+    pub(super) fn flat_extent(&self) -> f64 {
+        match self.kind {
+            Kind::Body => f64::from(f32::from_bits(self.piece[1])),
+            Kind::Flat | Kind::Large => f64::INFINITY,
+        }
+    }
+}
+
+/// The normal, turned to the side of `w`.
+pub(super) fn facing(normal: DVec3, w: DVec3) -> DVec3 {
+    if normal.dot(w) >= 0.0 {
+        normal
+    } else {
+        -normal
+    }
+}
+
+/// Whether a surface has a matt part.
+pub(super) fn is_matt_somewhere(optics: &Optics<'_>) -> bool {
+    let sides = &optics.scattering.sides;
+    sides
+        .iter()
+        .any(|side| !(side.reflectance.is_black() && side.transmittance.is_black()))
+}
+
+/// Which photons are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// All but direct light.
+    Indirect,
+    /// All but direct light and that of caustics.
+    IndirectWithoutCaustics,
+    /// Those of caustics.
+    Caustics,
+}
+
+/// Stores the photons of a block.
+pub(super) struct Collector<'s> {
+    pub(super) scene: &'s Scene,
+    pub(super) wanted: Wanted,
+    pub(super) center: DVec3,
+    pub(super) photons: Vec<Stored>,
+}
+
+impl Visitor for Collector<'_> {
+    fn arrives(&mut self, hit: &PhotonHit<'_>) -> Onward {
+        let is_wanted = match self.wanted {
+            Wanted::Indirect => hit.history != History::Direct,
+            Wanted::IndirectWithoutCaustics => {
+                matches!(hit.history, History::Diffuse | History::Unsampled)
+            }
+            Wanted::Caustics => hit.history == History::Specular,
+        };
+        if is_wanted && is_matt_somewhere(hit.optics) {
+            let piece = self.scene.piece(hit.point.primitive);
+            self.photons.push(Stored::new(hit, self.center, piece));
+        }
+        let goes_on = match self.wanted {
+            Wanted::Indirect | Wanted::IndirectWithoutCaustics => true,
+            Wanted::Caustics => {
+                let mut lobes = hit.optics.scattering.lobes.iter();
+                matches!(hit.history, History::Direct | History::Specular)
+                    && lobes.any(|lobe| lobe.is_delta())
+            }
+        };
+        if goes_on { Onward::Go } else { Onward::Stop }
+    }
+}
