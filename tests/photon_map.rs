@@ -129,7 +129,7 @@ fn c35_edges_and_corners_neither_leak_nor_darken() {
             floor_strip(&*estimator, low, high, 1),
             floor_strip(&*path, low, high, 128),
         );
-        assert!((found / truth - 1.0).abs() < 0.06, "{low}: {found} {truth}");
+        assert!((found / truth - 1.0).abs() < 0.1, "{low}: {found} {truth}");
     }
 }
 

@@ -25,6 +25,9 @@ const THICKNESS: f64 = 0.1;
 /// Least cosine between normals.
 const SAME_NORMAL: f64 = 0.9;
 
+/// Cosine between normals above which a surface is as good as flat: areas are then right to 10⁻⁴.
+const FLAT_NORMAL: f64 = 0.9999;
+
 /// Rings of the disk that measures the surface; ring i has 3 (2 i + 1) cells, all of the same area: 3 n² in n rings.
 const RINGS: usize = 3;
 
@@ -183,6 +186,21 @@ enum Seen {
     Obstacle,
 }
 
+/// What of a curved surface lies straight over or under a cell.
+fn over(scene: &Scene, target: DVec3, normal: DVec3, radius: f64) -> Seen {
+    let thickness = THICKNESS * radius;
+    let ray = Ray::new(target + normal * thickness, -normal).until(2.0 * thickness);
+    let Some(hit) = scene.closest(&ray) else {
+        return Seen::Nothing;
+    };
+    let cosine = facing(scene.surface(&ray, &hit).normal_g, normal).dot(normal);
+    if cosine > SAME_NORMAL {
+        Seen::Surface(1.0 / cosine)
+    } else {
+        Seen::Nothing
+    }
+}
+
 fn look(scene: &Scene, eye: DVec3, target: DVec3, at: DVec3, normal: DVec3, radius: f64) -> Seen {
     let to = target - eye;
     let distance = to.length();
@@ -197,9 +215,12 @@ fn look(scene: &Scene, eye: DVec3, target: DVec3, at: DVec3, normal: DVec3, radi
         if off.abs() <= THICKNESS * radius {
             let facing = facing(point.normal_g, -direction);
             if facing.dot(normal) > SAME_NORMAL {
-                // What lies over the cell is as much larger as it is inclined. Where the surface is curved the ray meets it
-                // beside the cell, which changes the normal little.
-                return Seen::Surface(1.0 / facing.dot(normal));
+                // Where the surface is curved the ray meets it beside the cell.
+                return if facing.dot(normal) > FLAT_NORMAL {
+                    Seen::Surface(1.0)
+                } else {
+                    over(scene, target, normal, radius)
+                };
             }
             // The edge of something else: a wall's foot, the side of a step.
             return if off > 0.0 {

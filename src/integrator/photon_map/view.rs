@@ -229,6 +229,7 @@ impl<'s> View<'s> {
                 media.absorption(),
                 self.bodies.beyond(media, point, &frame, wo),
             ],
+            advice: None,
         };
         self.sources
             .direct(&shading, Reach::First, strategies, sampler, rays)
