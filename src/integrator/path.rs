@@ -6,7 +6,7 @@
 //! What lets light straight through (alpha, panes) is met by chance and otherwise not there at all, which is not a scattering
 //! event; shadow rays multiply the fraction that passes instead. Both have the same mean.
 //!
-//! Where mirrors or glass make caustics, a [guide](super::guide) learns from which directions light comes, and matt surfaces
+//! Where mirrors or glass make caustics, a [guide] learns from which directions light comes, and matt surfaces
 //! scatter there more often.
 //!
 //! Mirrors and smooth glass send light into single directions, which light sampling cannot meet: light found behind them counts
