@@ -4,7 +4,7 @@ use super::sensors::SensorField;
 use crate::color::Rgb;
 use crate::integrator::photon::{Account, Onward, PhotonHit, Scale, Visitor};
 use crate::math::Ray;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 /// What has arrived at an organ.
@@ -36,7 +36,7 @@ pub(super) struct Tally<'a> {
     scale: Scale,
     n_bins: usize,
     /// Bins that got anything. A block meets few organs of many.
-    bins: HashMap<u32, Bin>,
+    bins: BTreeMap<u32, Bin>,
     sensors: &'a SensorField,
     sensed: Vec<Account>,
 }
@@ -47,13 +47,13 @@ impl<'a> Tally<'a> {
         Self {
             scale,
             n_bins,
-            bins: HashMap::new(),
+            bins: BTreeMap::new(),
             sensors,
             sensed: sensors.accounts(),
         }
     }
 
-    /// Adds all to the bins of the batch. Whole numbers: the order in which the map gives them does not show.
+    /// Adds all to the bins of the batch.
     pub(super) fn join(self, bins: &mut [Bin], sensed: &mut [Account]) {
         for (place, bin) in self.bins {
             bins[place as usize] += &bin;

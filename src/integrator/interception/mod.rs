@@ -102,7 +102,7 @@ impl Interception {
         let mut sums = Sums::new(n_organs + 1, sensors.len());
         let mut next = self.photons.max(1);
         for round in 0_u64.. {
-            self.round(round, next, &emission, sensors, &mut sums, context)?;
+            self.round([round, next], &emission, sensors, &mut sums, context)?;
             let excess = sums.excess(self.wanted);
             let done = sums.n_photons();
             let room = self.most_photons.saturating_sub(done);
@@ -117,11 +117,10 @@ impl Interception {
         Ok(sums.finish(is_reached))
     }
 
-    /// Adds a round of batches of together `photons` photons.
+    /// Adds a round, with its number, of batches of together `photons` photons.
     fn round(
         &self,
-        round: u64,
-        photons: u64,
+        [round, photons]: [u64; 2],
         emission: &Emission<'_>,
         sensors: &SensorField,
         sums: &mut Sums,
