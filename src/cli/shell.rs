@@ -141,7 +141,8 @@ impl Shell {
             seconds,
             made.effort,
             made.hash,
-        );
+        )
+        .warning(&made.warnings);
         target.write(&self.world, &report)
     }
 

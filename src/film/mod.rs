@@ -257,6 +257,29 @@ mod tests {
         assert_eq!((pixel.mean(), pixel.n_rejected), (Rgb::splat(3.0), 2));
     }
 
+    /// C-57: the mean of 10⁹ samples to 1e-7. A sum that has come so far must still feel each sample that is added; `f32` sums
+    /// stop at 2²⁴.
+    #[test]
+    fn a_mean_of_a_thousand_million_samples_is_exact() {
+        let before = 999_900_000_u32;
+        let mut half = HalfPixel {
+            sum: Rgb::splat(0.5 * f64::from(before)),
+            n_samples: before,
+        };
+        // Numbers 0, 1/1000, …, 999/1000 in turn: their mean is 0.4995.
+        for i in 0..100_000_u32 {
+            half.sum += Rgb::splat(f64::from(i % 1000) / 1000.0);
+            half.n_samples += 1;
+        }
+        let exact = (0.5 * f64::from(before) + 0.4995 * 1e5) / 1e9;
+        assert!(
+            (half.mean().g / exact - 1.0).abs() < 1e-12,
+            "{}",
+            half.mean().g
+        );
+    }
+
+    /// C-62.
     #[test]
     fn huge_and_tiny_radiances_survive() {
         let mut pixel = Pixel::default();

@@ -18,6 +18,7 @@ pub mod path;
 pub mod photon;
 pub mod photon_map;
 pub mod raytracer;
+pub mod requirements;
 pub mod sources;
 
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
@@ -41,6 +42,11 @@ pub trait Integrator {
         scene: &'s Scene,
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError>;
+
+    /// What pictures of `scene` by this method will lack without showing it, for people; nothing by default.
+    fn shortcomings(&self, _scene: &Scene) -> Vec<&'static str> {
+        Vec::new()
+    }
 }
 
 /// A method made ready for one scene.

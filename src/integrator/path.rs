@@ -15,6 +15,7 @@
 use super::guide::{self, Advice, Guide};
 use super::medium::{Bodies, left_after};
 use super::mis::power_heuristic;
+use super::requirements::has_focused_light;
 use super::sources::{Reach, Shading, Sources, receiver};
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
@@ -83,6 +84,13 @@ impl Integrator for Path {
             guide,
             settings: self.clone(),
         }))
+    }
+
+    fn shortcomings(&self, scene: &Scene) -> Vec<&'static str> {
+        let focused = "light that smooth curved glass throws onto other surfaces is missing: `path` does not find \
+                       light of a point, spot or parallel light or of the sun behind glass that bends it";
+        let lacks = has_focused_light(scene);
+        lacks.then_some(focused).into_iter().collect()
     }
 }
 

@@ -137,6 +137,7 @@ mod tests {
         shares
     }
 
+    /// C-63: one weight, weights of 0, weights 60 decades apart.
     #[test]
     fn shares_equal_the_weights() {
         let cases: [&[f64]; 6] = [
@@ -169,6 +170,7 @@ mod tests {
         }
     }
 
+    /// C-63, C-54.
     #[test]
     fn no_weight_is_an_empty_table_and_bad_weights_are_refused() {
         for weights in [&[][..], &[0.0, 0.0]] {

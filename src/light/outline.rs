@@ -30,6 +30,7 @@ pub struct LampOutline {
 /// An outline made ready to be asked from many points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beam {
+    bounds: Bounds3,
     center: DVec3,
     /// Squared radius of the ball round the box.
     radius2: f64,
@@ -40,6 +41,9 @@ pub(super) struct Beam {
     /// Whether light leaves by the cosine to the normal.
     is_surface: bool,
 }
+
+/// Within its box a lamp counts as this part of the squared radius away, at least.
+const INSIDE: f64 = 1.0 / 65_536.0;
 
 /// A point that waits for light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +114,7 @@ impl LampOutline {
 impl Beam {
     pub(super) fn new(outline: &LampOutline) -> Self {
         Self {
+            bounds: outline.bounds,
             center: outline.bounds.center(),
             radius2: 0.25 * outline.bounds.diagonal().length_squared(),
             axis: outline.axis,
@@ -125,13 +130,20 @@ impl Beam {
     ///
     /// Source: [ContyKulla2018](crate::references#contykulla2018), with cosines and sines for angles as in
     /// [`PBRT4`, §12.6.3](crate::references#pbrt4).
-    pub(super) fn nearness(&self, receiver: &Receiver) -> f64 {
+    ///
+    /// The second number is 1 over the squared distance of the nearest point of the box, 0 with the first. By the middles of boxes
+    /// alone a lamp close by, at the rim of all boxes that hold it, would hardly be chosen.
+    pub(super) fn nearness(&self, receiver: &Receiver) -> [f64; 2] {
+        let least = f64::MIN_POSITIVE.sqrt();
+        let nearest = receiver.position.clamp(self.bounds.min, self.bounds.max);
+        let gap2 = (nearest - receiver.position).length_squared();
+        let close = 1.0 / gap2.max(INSIDE * self.radius2).max(least);
         let to = self.center - receiver.position;
         let distance2 = to.length_squared();
         // Nearer than its own size a lamp is as bright as at that distance. Never 0, so that quotients stay numbers.
-        let near2 = distance2.max(self.radius2).max(f64::MIN_POSITIVE.sqrt());
+        let near2 = distance2.max(self.radius2).max(least);
         let Some(wi) = to.try_normalize().filter(|_| distance2 > self.radius2) else {
-            return 1.0 / near2;
+            return [1.0 / near2, close];
         };
         // The box looks smaller than this cone.
         let sin2 = self.radius2 / distance2;
@@ -147,7 +159,7 @@ impl Beam {
         });
         let leaving = leaving.less(self.spread).less(seen);
         if leaving.cos < self.cos_emission - CONE_SLACK {
-            return 0.0;
+            return [0.0; 2];
         }
         let sent = if self.is_surface {
             leaving.cos.max(CONE_SLACK)
@@ -164,9 +176,9 @@ impl Beam {
             arriving.less(seen).cos + CONE_SLACK
         });
         if received > 0.0 {
-            sent * received / near2
+            [sent * received / near2, close]
         } else {
-            0.0
+            [0.0; 2]
         }
     }
 }

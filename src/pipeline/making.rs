@@ -11,10 +11,11 @@ use super::viewing::Viewing;
 use super::viewpoint;
 use super::world::{Entry, World};
 use crate::animation::{Flight, frame_name};
-use crate::diag::{Diagnostics, SourceMap};
+use crate::diag::{Diagnostic, Diagnostics, SourceMap, Span};
 use crate::image::png_text;
 use crate::integrator::CancelToken;
 use crate::options::{Options, Stage};
+use crate::scene::Scene;
 use std::path::Path;
 
 /// The text of a frame that tells what it was made from.
@@ -33,6 +34,8 @@ pub struct Made {
     pub n_kept: u32,
     /// Frames (or pictures) that were made.
     pub n_made: u32,
+    /// What the pictures lack without showing it.
+    pub warnings: Vec<&'static str>,
 }
 
 /// What becomes of a picture that was stopped before it had all its samples.
@@ -73,6 +76,24 @@ impl Making<'_> {
         }
     }
 
+    /// Tells what pictures of the scene will lack, and gives it back.
+    fn warn(&self, run: &Run, viewing: &Viewing<'_>, scene: &Scene) -> Vec<&'static str> {
+        let warnings = viewing.shortcomings(scene);
+        let mut found = Diagnostics::default();
+        for text in &warnings {
+            let hint =
+                "a lamp with extent (an `AreaLight`) or rough glass gives a complete picture";
+            found.push(Diagnostic {
+                primary: None,
+                ..Diagnostic::warning("missing-light", Span::default(), *text).hint(hint)
+            });
+        }
+        if !warnings.is_empty() {
+            self.audience.warned(&run.sources.map, &found);
+        }
+        warnings
+    }
+
     /// Makes the picture of a run. Stopped early, the picture is written with the samples so far.
     ///
     /// # Errors
@@ -87,6 +108,7 @@ impl Making<'_> {
         let view = viewpoint::of_scene(&run.options, &scene);
         let camera = viewpoint::camera(&run.sources, &run.options, &view)?;
         let viewing = self.viewing(run);
+        let warnings = self.warn(run, &viewing, &scene);
 
         self.audience.begins("preparing");
         let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
@@ -113,6 +135,7 @@ impl Making<'_> {
             is_whole: shot.is_whole,
             n_kept: 0,
             n_made: 1,
+            warnings,
         })
     }
 
@@ -133,6 +156,7 @@ impl Making<'_> {
         let flight = Flight::orbit(start, run.options.flight_frames.value);
         let frames = run.options.frames.value.clone().unwrap_or(flight.all());
         let viewing = self.viewing(run);
+        let warnings = self.warn(run, &viewing, &scene);
 
         // The exposure is that of the flight's first frame, whichever frames are made: it never flickers.
         self.audience.begins("preparing");
@@ -150,7 +174,10 @@ impl Making<'_> {
             audience: self.audience,
             n_frames: frames.len() as u64,
         };
-        let mut film = FilmProgress::default();
+        let mut film = FilmProgress {
+            warnings,
+            ..FilmProgress::default()
+        };
         audience.audience.begins("flying");
         for (index, frame) in frames.enumerate() {
             let path = folder.join(frame_name(frame));
@@ -228,6 +255,7 @@ struct FilmProgress {
     effort: Option<Effort>,
     n_kept: u32,
     n_made: u32,
+    warnings: Vec<&'static str>,
 }
 
 impl FilmProgress {
@@ -249,6 +277,7 @@ impl FilmProgress {
             is_whole,
             n_kept: self.n_kept,
             n_made: self.n_made,
+            warnings: self.warnings,
         }
     }
 }

@@ -148,6 +148,8 @@ pub struct Report<'a> {
     relative_error: Option<f64>,
     peak_memory_bytes: Option<u64>,
     image_hash: String,
+    /// What the pictures lack without showing it.
+    warnings: &'a [&'static str],
 }
 
 /// Keys by which an earlier report of `light` is known when it is to be replaced.
@@ -263,7 +265,14 @@ impl<'a> Report<'a> {
             relative_error: effort.relative_error,
             peak_memory_bytes: world.peak_memory(),
             image_hash: image.to_string(),
+            warnings: &[],
         }
+    }
+
+    /// The same report, which also tells what the pictures lack.
+    #[must_use]
+    pub fn warning(self, warnings: &'a [&'static str]) -> Self {
+        Self { warnings, ..self }
     }
 }
 

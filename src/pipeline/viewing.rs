@@ -81,6 +81,11 @@ impl Viewing<'_> {
         }
     }
 
+    /// What pictures will lack without showing it, for people.
+    pub fn shortcomings(&self, scene: &Scene) -> Vec<&'static str> {
+        method(self.options).integrator().shortcomings(scene)
+    }
+
     /// The factor that radiance is multiplied by before it is shown: what `--exposure` says, or what suits the picture
     /// that `camera` sees. Always the same for the same scene, options and camera.
     ///
