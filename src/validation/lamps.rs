@@ -12,7 +12,6 @@ use crate::light::{Environment, Light, Sky, SunDisk};
 use crate::material::Material;
 use crate::math::angle::Angle;
 use crate::math::functions::acos;
-use crate::math::rng;
 use crate::math::tolerance::CLOSED_FORM;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -49,66 +48,6 @@ pub(super) fn checks() -> Vec<Check> {
     checks.extend(parallel());
     checks.extend(suns());
     checks.extend(veils());
-    checks.extend(crowds());
-    checks
-}
-
-/// A thousand lamps, of which one is chosen at a time: some black, some in one place, some below the floor; and the same with
-/// one behind a wall that is 10¹² times as strong (C-45).
-fn crowds() -> Vec<Check> {
-    let lamp = |i: u64| {
-        let h = |k: u64| rng::unit_f64(rng::hash(&[0xC40D, i, k]));
-        // Every tenth stands where its neighbour does, or below the floor, or gives nothing.
-        let (x, y) = if i % 10 == 1 {
-            (3.0, 2.0)
-        } else {
-            (40.0 * h(0) - 20.0, 40.0 * h(1) - 20.0)
-        };
-        let z = (0.5 + 3.0 * h(2)) * if i % 10 == 2 { -1.0 } else { 1.0 };
-        let power = if i % 10 == 3 { 0.0 } else { 4.0 * PI * h(3) };
-        Light::point(DVec3::new(x, y, z), gray(power))
-    };
-    let lamps: Vec<Light> = (0..1000).map(lamp).collect();
-    let expected: f64 = lamps
-        .iter()
-        .filter_map(|lamp| lamp.illuminate(DVec3::ZERO))
-        .map(|light| light.facing_irradiance.g * light.wi.z.max(0.0))
-        .sum();
-    let mut checks = Vec::new();
-    for (id, what, hidden) in [
-        (
-            "lamp-crowd",
-            "irradiance of 1,000 point sources: the sum",
-            false,
-        ),
-        (
-            "lamp-crowd-hidden",
-            "the same with one of 1e12 times the power behind a wall",
-            true,
-        ),
-    ] {
-        let lamps = lamps.clone();
-        checks.push(Check::mean((id, what), expected, 5.0 * FAULT, move || {
-            let mut room = floor();
-            for lamp in &lamps {
-                room = room.lit_by(lamp.clone());
-            }
-            if hidden {
-                let far = DVec3::new(0.0, 0.0, 60.0);
-                let strong = Light::point(far, gray(4.0e12 * PI));
-                let cover = Shape::Sphere { radius: 1.0 };
-                let black = Material::lambert(Rgb::BLACK);
-                room = room.lit_by(strong).with(cover, at(0., 0., 60.), black);
-            }
-            let path = Path {
-                max_depth: Some(1),
-                ..Path::default()
-            };
-            let look = along(DVec3::Z * 0.1, DVec3::NEG_Z);
-            let experiment = Experiment::new(room.scene()?, look).by(path);
-            Ok(experiment.times(PI / RHO).spread(64))
-        }));
-    }
     checks
 }
 
