@@ -227,7 +227,7 @@ mod tests {
             let shear = Shear::new(&line);
             let box_ray = BoxRay::new(line.origin, line.direction, 1.0 / line.direction);
             // Between the middle of the way and a little beyond it, exactly to the target, or on and on.
-            let after = if random.0 % 3 == 0 { 0.5 } else { 0.0 };
+            let after = if random.0.is_multiple_of(3) { 0.5 } else { 0.0 };
             let whole = intersect_triangle(
                 &shear,
                 [a.as_ref(), b.as_ref(), c.as_ref()],

@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Bounds on the light of some lamps.
 ///
-/// Source: [ContyKulla2018](crate::references#contykulla2018): a box, a cone of normals, and the angle to a normal up to
+/// Source: [`ContyKulla2018`](crate::references#contykulla2018): a box, a cone of normals, and the angle to a normal up to
 /// which light leaves. Angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LampOutline {
@@ -86,7 +86,7 @@ impl LampOutline {
 
     /// The outline of both.
     ///
-    /// Source: [ContyKulla2018](crate::references#contykulla2018).
+    /// Source: [`ContyKulla2018`](crate::references#contykulla2018).
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let (axis, spread) = cone_of_both((self.axis, self.spread), (other.axis, other.spread));
@@ -102,7 +102,7 @@ impl LampOutline {
 
     /// Measure of the directions that light leaves in, for comparing ways to divide lamps.
     ///
-    /// Source: [ContyKulla2018](crate::references#contykulla2018).
+    /// Source: [`ContyKulla2018`](crate::references#contykulla2018).
     pub(super) fn orientation(&self) -> f64 {
         let (o, w) = (self.spread, (self.spread + self.emission).min(PI));
         let sides = if self.is_two_sided { 2.0 } else { 1.0 };
@@ -128,7 +128,7 @@ impl Beam {
     /// How much of its light arrives at a point at most, per strength, 1/m²: cosines at both ends over the squared distance, as
     /// good as the outline knows. 0 only if none arrives.
     ///
-    /// Source: [ContyKulla2018](crate::references#contykulla2018), with cosines and sines for angles as in
+    /// Source: [`ContyKulla2018`](crate::references#contykulla2018), with cosines and sines for angles as in
     /// [`PBRT4`, §12.6.3](crate::references#pbrt4).
     ///
     /// The second number is 1 over the squared distance of the nearest point of the box, 0 with the first. By the middles of boxes

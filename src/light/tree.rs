@@ -226,7 +226,7 @@ impl Odds {
 /// Puts the lamps in order and says where the right half begins, never at an end: where boxes and cones of both halves are
 /// smallest for the strength in them.
 ///
-/// Source: [ContyKulla2018](crate::references#contykulla2018). The square of the diagonal stands for the area of a box,
+/// Source: [`ContyKulla2018`](crate::references#contykulla2018). The square of the diagonal stands for the area of a box,
 /// which is 0 for lamps in a line, and lamps are counted besides their strength, since they are also chosen without it.
 fn divide(items: &mut [Item], whole: &LampOutline, depth: u32) -> usize {
     let mut best: Option<(f64, usize, f64)> = None;

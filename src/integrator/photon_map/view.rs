@@ -57,6 +57,13 @@ struct Onward {
     last: Option<LastScattering>,
 }
 
+/// A surface, and the direction it is seen from.
+struct Seen<'a> {
+    point: &'a SurfacePoint,
+    optics: &'a Optics<'a>,
+    wo: DVec3,
+}
+
 impl RadianceEstimator for View<'_> {
     fn incident_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb {
         let mut radiance = Rgb::BLACK;
@@ -75,12 +82,17 @@ impl RadianceEstimator for View<'_> {
             };
             radiance += throughput * self.emitted_radiance(&point, &optics, last);
             let wo = -ray.direction;
-            radiance += throughput * self.matt_radiance(&point, &optics, wo, &media, sampler, rays);
+            let seen = Seen {
+                point: &point,
+                optics: &optics,
+                wo,
+            };
+            radiance += throughput * self.matt_radiance(&seen, &media, sampler, rays);
             if optics.scattering.is_matt() || depth >= self.max_depth {
                 break;
             }
             sampler.start_vertex(GLOSSY + depth);
-            radiance += throughput * self.glossy_direct(&point, &optics, wo, &media, sampler, rays);
+            radiance += throughput * self.glossy_direct(&seen, &media, sampler, rays);
             let onward = self.scatter(&point, &optics, wo, &mut media, sampler);
             let Some(onward) = onward else { break };
             throughput *= onward.weight;
@@ -149,13 +161,12 @@ impl<'s> View<'s> {
     /// Direct and stored light that the matt part of a surface sends along `wo`.
     fn matt_radiance(
         &self,
-        point: &SurfacePoint,
-        optics: &Optics<'_>,
-        wo: DVec3,
+        seen: &Seen<'_>,
         media: &Media,
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Rgb {
+        let Seen { point, optics, wo } = *seen;
         let matt = Scattering {
             sides: optics.scattering.sides,
             lobes: &[],
@@ -163,14 +174,7 @@ impl<'s> View<'s> {
         if !matt.is_smooth() {
             return Rgb::BLACK;
         }
-        let direct = self.direct(
-            point,
-            &matt,
-            wo,
-            media,
-            (Strategies::LightsOnly, sampler),
-            rays,
-        );
+        let direct = self.direct(seen, &matt, media, (Strategies::LightsOnly, sampler), rays);
         let near = usize::from(point.normal_g.dot(wo) < 0.0);
         let (reflectance, transmittance) = (
             matt.sides[near].reflectance,
@@ -196,29 +200,27 @@ impl<'s> View<'s> {
     /// Direct light that the glossy parts of a surface send along `wo`.
     fn glossy_direct(
         &self,
-        point: &SurfacePoint,
-        optics: &Optics<'_>,
-        wo: DVec3,
+        seen: &Seen<'_>,
         media: &Media,
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Rgb {
-        let lobes = lobes_of(optics);
+        let lobes = lobes_of(seen.optics);
         if !lobes.is_smooth() {
             return Rgb::BLACK;
         }
-        self.direct(point, &lobes, wo, media, (Strategies::Both, sampler), rays)
+        self.direct(seen, &lobes, media, (Strategies::Both, sampler), rays)
     }
 
     fn direct(
         &self,
-        point: &SurfacePoint,
+        seen: &Seen<'_>,
         scattering: &Scattering<'_>,
-        wo: DVec3,
         media: &Media,
         (strategies, sampler): (Strategies, &Sampler),
         rays: &mut RayCounts,
     ) -> Rgb {
+        let Seen { point, wo, .. } = *seen;
         let frame = frame_of(point);
         let shading = Shading {
             point,
