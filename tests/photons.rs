@@ -68,8 +68,8 @@ fn follow(scene: &Scene, aim: Aim, photons: &Photons) -> (Arrivals, Ledger) {
 }
 
 /// Means over independent runs of a figure of each.
-fn runs(n: u64, mut figure: impl FnMut(u64) -> f64) -> RunningStats {
-    (0..n).map(|seed| figure(seed)).collect()
+fn runs(n: u64, figure: impl FnMut(u64) -> f64) -> RunningStats {
+    (0..n).map(figure).collect()
 }
 
 /// Green power that arrives at one side of a shape from `n` photons, many times.

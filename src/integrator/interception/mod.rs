@@ -70,7 +70,7 @@ pub enum InterceptionError {
 const FASTEST_GROWTH: f64 = 8.0;
 
 /// With which power of the number of photons errors are expected to fall: between that of independent photons (0.5) and what
-/// parallel light reaches ([M] in `light.md` E3: 0.72).
+/// parallel light reaches (measured for a tree's leaves: 0.72).
 const EXPECTED_RATE: f64 = 0.6;
 
 impl Interception {
