@@ -237,7 +237,8 @@ fn look(scene: &Scene, eye: DVec3, target: DVec3, at: DVec3, normal: DVec3, radi
         }
         next = scene.closest_after(&ray, &hit);
     }
-    Seen::Nothing
+    // Past the cell: over the edge, or where the surface turns away.
+    over(scene, target, normal, radius)
 }
 
 #[cfg(test)]
@@ -378,6 +379,44 @@ mod tests {
         for x in [-0.04, 0.0, 0.04] {
             let before = at(&scene, behind.clone(), DVec3::X * x, RADIUS);
             assert!(before > 0.7 && before < 4.0, "{x}: {before}");
+        }
+    }
+
+    #[test]
+    fn a_ball_is_as_bright_as_its_light() {
+        // From outside and from inside, with kernels up to where its surface turns by 24°.
+        let ball = PlacedShape {
+            shape: Shape::Sphere { radius: 0.3 },
+            to_group: DAffine3::IDENTITY,
+            material: MaterialId(0),
+            organ: OrganId(0),
+        };
+        let scene = Scene::build(SceneDescription {
+            materials: vec![Material::default()],
+            groups: vec![Group {
+                shapes: vec![ball],
+                instances: vec![],
+            }],
+            root: Some(GroupId(0)),
+            ..SceneDescription::default()
+        })
+        .unwrap();
+        let n = 40_000;
+        for side in [1.0, -1.0] {
+            let photon = |i: i32| {
+                let z = (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                let w = crate::math::warp::direction(z, f64::from(i) * 0.618_033_988_75);
+                Stored::at(w * 0.3, w * side, 0.36 * PI / f64::from(n))
+            };
+            let photons: Vec<Stored> = (0..n).map(photon).collect();
+            for radius in [0.03, 0.06, 0.12] {
+                let grid = Grid::new(photons.clone(), radius, Stored::position);
+                for w in [DVec3::X, DVec3::new(0.6, -0.48, 0.64)] {
+                    let at = (w * 0.3, w * side);
+                    let found = irradiance(&scene, &grid, DVec3::ZERO, at, radius).0.g;
+                    assert!((found - 1.0).abs() < 0.06, "{side} {radius} {w}: {found}");
+                }
+            }
         }
     }
 
