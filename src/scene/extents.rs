@@ -39,8 +39,8 @@ pub enum Piece {
 /// Primitives of a shape that are looked at one by one.
 const FEW: usize = 64;
 
-/// Share of its radius over which a round surface counts as flat: its normals turn by 24°.
-const FLAT_SHARE: f64 = 0.4;
+/// Share of its radius over which a round surface counts as flat: its normals turn by 17°.
+const FLAT_SHARE: f64 = 0.3;
 
 /// Cosine between normals of primitives that count as one flat piece.
 const NEARLY_FLAT: f64 = 0.9;
@@ -324,7 +324,7 @@ mod tests {
         };
         assert!((area - 4.0 * PI).abs() < 1e-9);
         assert!(
-            matches!(scene.piece(PrimitiveId(2)), Piece::Body(flat) if (flat - 0.2).abs() < 1e-9)
+            matches!(scene.piece(PrimitiveId(2)), Piece::Body(flat) if (flat - 0.15).abs() < 1e-9)
         );
     }
 

@@ -19,8 +19,9 @@ use crate::scene::Scene;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// How far from the tangent plane photons and surface may be, in radii.
-const THICKNESS: f64 = 0.1;
+/// How far from the tangent plane photons and surface may be, in radii: as far as a body falls off within the kernel that
+/// [`Piece::Body`](crate::scene::Piece) allows.
+const THICKNESS: f64 = 0.15;
 
 /// Least cosine between normals.
 const SAME_NORMAL: f64 = 0.9;
@@ -226,11 +227,11 @@ fn look(scene: &Scene, eye: DVec3, target: DVec3, at: DVec3, normal: DVec3, radi
             return if off > 0.0 {
                 Seen::Obstacle
             } else {
-                Seen::Nothing
+                over(scene, target, normal, radius)
             };
         }
         if off < 0.0 {
-            return Seen::Nothing;
+            break;
         }
         if scene.optics(&point).is_opaque() {
             return Seen::Obstacle;
@@ -384,7 +385,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_as_bright_as_its_light() {
-        // From outside and from inside, with kernels up to where its surface turns by 24°.
+        // From outside and from inside, with kernels up to where its surface turns by 17°.
         let ball = PlacedShape {
             shape: Shape::Sphere { radius: 0.3 },
             to_group: DAffine3::IDENTITY,
@@ -409,7 +410,7 @@ mod tests {
                 Stored::at(w * 0.3, w * side, 0.36 * PI / f64::from(n))
             };
             let photons: Vec<Stored> = (0..n).map(photon).collect();
-            for radius in [0.03, 0.06, 0.12] {
+            for radius in [0.03, 0.06, 0.09] {
                 let grid = Grid::new(photons.clone(), radius, Stored::position);
                 for w in [DVec3::X, DVec3::new(0.6, -0.48, 0.64)] {
                     let at = (w * 0.3, w * side);
