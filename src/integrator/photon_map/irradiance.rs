@@ -9,8 +9,8 @@ use super::grid::{Grid, cell};
 use super::radius::kernel_radius;
 use super::stored::{Stored, facing};
 use crate::color::Rgb;
-use crate::math::PrimitiveId;
 use crate::math::frame::Frame;
+use crate::math::{PrimitiveId, Ray};
 use crate::scene::{Piece, Scene, SurfacePoint};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -27,6 +27,9 @@ const SAME_NORMAL: f64 = 0.9;
 /// How far from the tangent plane of a point a sample may lie, in spacings.
 const THICKNESS: f64 = 0.3;
 
+/// How high above the surface the way from a sample to a point is looked along, in radii.
+const LIFT: f64 = 0.1;
+
 /// Irradiance at one place.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
@@ -39,13 +42,22 @@ struct Sample {
 }
 
 impl Sample {
-    /// Whether something stands between it and the point this far from it.
-    fn is_hidden(&self, from: DVec3) -> bool {
+    /// Whether something stands between it and a point, both relative to `center`. A ray just above the surface tells, but only
+    /// where anything at all stands near the sample.
+    fn is_hidden(&self, scene: &Scene, center: DVec3, point: DVec3) -> bool {
         if self.hidden.is_none() {
             return false;
         }
-        let local = Frame::from_normal(self.normal.as_dvec3()).to_local(from);
-        self.hidden.holds(local.truncate() / f64::from(self.radius))
+        let position = self.position.as_dvec3();
+        let local = Frame::from_normal(self.normal.as_dvec3()).to_local(point - position);
+        if self.hidden.holds(local.truncate() / f64::from(self.radius)) {
+            return true;
+        }
+        let lift = self.normal.as_dvec3() * (LIFT * f64::from(self.radius));
+        let to = point - position;
+        let distance = to.length();
+        let ray = |w| Ray::new(center + position + lift, w).until(distance);
+        to.try_normalize().is_some_and(|w| scene.occluded(&ray(w)))
     }
 }
 
@@ -110,7 +122,13 @@ impl IrradianceMap {
     }
 
     /// Irradiance at a point, which lies on this piece, on the side that `w` points to, W/m² per channel.
-    pub(super) fn irradiance(&self, point: &SurfacePoint, piece: &Piece, w: DVec3) -> Rgb {
+    pub(super) fn irradiance(
+        &self,
+        scene: &Scene,
+        point: &SurfacePoint,
+        piece: &Piece,
+        w: DVec3,
+    ) -> Rgb {
         let normal = facing(point.normal_g, w);
         if let Piece::Flat { first, size, .. } = *piece
             && size <= 2.0 * self.radius
@@ -127,7 +145,7 @@ impl IrradianceMap {
             let share = to.length_squared() / (reach * reach);
             let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
                 && to.dot(normal).abs() <= THICKNESS * self.spacing;
-            if share < 1.0 && is_same && !sample.is_hidden(-to) {
+            if share < 1.0 && is_same && !sample.is_hidden(scene, self.center, position) {
                 let weight = (1.0 - share) * (1.0 - share);
                 sum += sample.irradiance.as_dvec3() * weight;
                 weights += weight;

@@ -188,10 +188,10 @@ impl<'s> View<'s> {
             .flatten()
         {
             if !reflectance.is_black() {
-                stored += reflectance * map.irradiance(point, &piece, side);
+                stored += reflectance * map.irradiance(self.scene, point, &piece, side);
             }
             if !transmittance.is_black() {
-                stored += transmittance * map.irradiance(point, &piece, -side);
+                stored += transmittance * map.irradiance(self.scene, point, &piece, -side);
             }
         }
         direct + stored * FRAC_1_PI
