@@ -374,6 +374,7 @@ fn a_frame_is_the_same_whichever_part_of_the_flight_is_made() {
     assert!(bytes(&one) != bytes(&two), "the camera does not move");
 }
 
+/// C-64.
 #[test]
 fn a_flight_goes_on_where_it_was_and_never_over_a_stranger() {
     let bench = Bench::new(TREE);
@@ -691,4 +692,103 @@ public void run() [ A(x) ==> A(2 * x); { sizes.addRow().set(0, sum((* A *)[x]));
         "{drawing}"
     );
     assert!(drawing.contains("length"), "{drawing}");
+}
+
+/// Some of the quickest checks.
+const QUICK: &str = "body";
+
+#[test]
+fn checks_are_chosen_by_name_and_kept_in_a_file() {
+    let bench = Bench::new(TREE);
+    let shown = bench.succeed(&format!("validate --only {QUICK} --json c.json --seed 7"));
+    let json: serde_json::Value = serde_json::from_slice(&bytes(&bench.path("c.json"))).unwrap();
+    let checks = json["checks"].as_array().unwrap();
+    assert!(!checks.is_empty());
+    // What is shown and what is kept are the same checks, and only those asked for.
+    assert_eq!(shown.lines().count(), 1 + checks.len(), "{shown}");
+    for (check, line) in checks.iter().zip(shown.lines().skip(1)) {
+        let id = check["id"].as_str().unwrap();
+        assert!(id.starts_with(QUICK) && line.starts_with(&format!("ok    {id}")));
+        assert_eq!(check["ok"], true);
+        assert!(
+            check["expected"].is_f64() && check["measured"].is_f64(),
+            "{check}"
+        );
+    }
+    assert_eq!((&json["failed"], &json["seed"]), (&0.into(), &7.into()));
+    assert_eq!(json["validated"], env!("CARGO_PKG_VERSION"));
+    // Its own file is replaced, that of another is not.
+    bench.succeed(&format!("validate --only {QUICK} --json c.json"));
+    bench.write("notes.json", "[1, 2, 3]");
+    let line = format!("validate --only {QUICK} --json notes.json");
+    assert!(bench.fail(&line, 3).contains("not replaced"));
+    let line = format!("validate --only {QUICK} --json no/such/folder.json");
+    assert!(bench.fail(&line, 3).contains("no/such"));
+}
+
+#[test]
+fn a_check_that_does_not_exist_is_a_usage_error_that_names_those_there_are() {
+    let bench = Bench::new(TREE);
+    let message = bench.fail("validate --only furnance --json c.json", 2);
+    for word in ["`furnance`", "factor, lamp", "furnace", "sphere", "stack"] {
+        assert!(message.contains(word), "{word}: {message}");
+    }
+    assert!(!bench.path("c.json").exists());
+    // Every beginning that the message names is one.
+    let names = message.trim().rsplit("begin with ").next().unwrap();
+    assert!(
+        names
+            .split(", ")
+            .all(|name| name.chars().all(char::is_lowercase)),
+        "{names}"
+    );
+    let help = bench.succeed("validate --help");
+    for code in ["0 all hold", "1 one differs", "2 no check", "3 a file"] {
+        assert!(help.contains(code), "{code}: {help}");
+    }
+}
+
+/// Photons that cost nothing.
+const FEW: &str = "--global-photons 1000 --caustic-photons 1000";
+
+/// A lamp over a floor, with what else is there.
+fn lit_floor(more: &str) -> String {
+    format!(
+        "protected void init() [ Axiom ==> [ Translate(0, 1, 0) Rotate(90, 0, 0) Parallelogram(2, 2) ]\n\
+         [ Translate(0, 0, 2) LightNode().(setLight(new PointLight().(setPower(100)))) ] {more}; ]\n"
+    )
+}
+
+#[test]
+fn light_that_a_picture_lacks_is_told_and_kept_in_the_report() {
+    let glass = "[ Translate(0, 0, 1) Sphere(0.3).(setShader(new Glass(1.5))) ]";
+    let told = "light that smooth curved glass throws onto other surfaces is missing";
+    let look = |model: &str, renderer: &str| {
+        let bench = Bench::new(model);
+        let line =
+            format!("render m.rgg -o m.png {SMALL} --renderer {renderer} {FEW} --report r.json");
+        let output = bench.run(&line);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let report: serde_json::Value =
+            serde_json::from_slice(&bytes(&bench.path("r.json"))).unwrap();
+        (message, report["warnings"].clone())
+    };
+    let (message, warnings) = look(&lit_floor(glass), "path");
+    for part in [
+        &format!("Warning: {told}") as &str,
+        "`path` does not find light of a point, spot or parallel light",
+        "a lamp with extent (an `AreaLight`) or rough glass gives a complete picture",
+    ] {
+        assert!(message.contains(part), "{part}\n{message}");
+    }
+    assert_eq!(message.matches(told).count(), 1, "{message}");
+    let warnings = warnings.as_array().unwrap();
+    assert!(warnings.len() == 1 && warnings[0].as_str().unwrap().starts_with(told));
+    // Without glass nothing is missing; photons find what comes through it.
+    for (model, renderer) in [(lit_floor(""), "path"), (lit_floor(glass), "photon")] {
+        let (message, warnings) = look(&model, renderer);
+        assert!(!message.contains("is missing"), "{renderer}\n{message}");
+        assert_eq!(warnings, serde_json::json!([]), "{renderer}");
+    }
 }

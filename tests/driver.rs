@@ -64,11 +64,12 @@ fn picture(
 /// With this seed `picture` is cancelled after its first pass.
 const STOPPED_SEED: u64 = 999;
 
+/// C-59, C-64: on any number of threads, and as far as it was made.
 #[test]
 fn bytes_do_not_depend_on_threads_or_passes() {
     let mut go_on = |_: &FilmResult| ControlFlow::Continue(());
     let one = picture(1, 3, 7, &mut go_on).unwrap();
-    for threads in [2, 3] {
+    for threads in [2, 3, 7, 16] {
         assert_eq!(picture(threads, 3, 7, &mut go_on).unwrap(), one);
     }
     assert_ne!(picture(2, 4, 7, &mut go_on).unwrap().film, one.film);
@@ -86,6 +87,7 @@ fn bytes_do_not_depend_on_threads_or_passes() {
     assert_eq!(stopped.film.n_samples(), 51 * 34 * 4);
 }
 
+/// C-64: what was cancelled holds whole samples, and nothing of it is left when the picture is made anew.
 #[test]
 fn cancelling_keeps_what_is_finished() {
     let mut passes = 0;

@@ -101,6 +101,7 @@ fn absorption_follows_the_path() {
     assert!(error(seen(0.0, -1.5), 0.3 * 0.5) < 1e-9);
 }
 
+/// C-48: to the last bit.
 #[test]
 fn equal_index_is_no_object() {
     let rays = |i: u64| {
@@ -122,7 +123,7 @@ fn equal_index_is_no_object() {
     }
 }
 
-/// All ways of finding light have the same mean before shiny, rough and mixed surfaces, and behind panes.
+/// C-55: all ways of finding light have the same mean before shiny, rough and mixed surfaces, and behind panes.
 #[test]
 fn strategies_agree_before_every_lobe() {
     let lamp = Material::lambert(Rgb::BLACK).emitting(gray(4.0), gray(4.0));
@@ -166,7 +167,7 @@ fn strategies_agree_before_every_lobe() {
     assert_same("both, scattering only", &seen[0], &seen[2], 2);
 }
 
-/// Russian roulette changes no mean, in a room full of glass.
+/// C-56: Russian roulette changes no mean, in a room full of glass.
 #[test]
 fn roulette_and_glass() {
     let wall = Material::lambert(gray(0.2)).emitting(gray(0.0), gray(1.0));

@@ -93,6 +93,7 @@ fn ceiling(scene: &Scene, path: &Path, n: u64) -> RunningStats {
     seen
 }
 
+/// C-60: the guide is switched on where a scene requires it.
 #[test]
 fn a_guide_changes_the_noise_and_not_the_mean() {
     // Two events on the way are enough for the lamp in the mirror.

@@ -271,7 +271,7 @@ fn intercepted(
     (mean, (variance / n).sqrt())
 }
 
-/// Black discs at random: Beer's law for parallel light and for a uniform sky (C 66, 67).
+/// Black discs at random: Beer's law for parallel light and for a uniform sky (C-66, C-67).
 #[test]
 fn random_black_leaves_intercept_as_beer_says() {
     let (size, r) = (1.0, 0.03);
@@ -448,7 +448,7 @@ fn outdoors(shapes: Vec<PlacedShape>, materials: Vec<Material>, to: DAffine3) ->
     Scene::build(drawn).unwrap()
 }
 
-/// C 43 and the promise of every result: the books balance to the quantum, and threads do not show.
+/// C-43, C-59 and the promise of every result: the books balance to the quantum, and threads do not show.
 #[test]
 fn the_books_balance_exactly_on_any_number_of_threads() {
     let (materials, shapes) = leaves();
@@ -468,7 +468,7 @@ fn the_books_balance_exactly_on_any_number_of_threads() {
     assert!(off < 1e-9 * one.books.emitted.sum(), "{off}");
 }
 
-/// C 68: where nothing is absorbed all light comes back.
+/// C-68: where nothing is absorbed all light comes back.
 #[test]
 fn a_canopy_without_absorption_keeps_nothing() {
     let mut drawn = canopy(300, 0.06, 1.0, 1.0, false, 5);
@@ -491,7 +491,7 @@ fn a_canopy_without_absorption_keeps_nothing() {
     assert!((found.books.escaped.sum() / emitted - 1.0).abs() < 1e-9);
 }
 
-/// C 69: what photons bring is what rays traced back from the leaf find, leaf by leaf.
+/// C-69: what photons bring is what rays traced back from the leaf find, leaf by leaf.
 #[test]
 fn forward_and_backward_agree() {
     let (_, shapes) = leaves();
@@ -538,7 +538,7 @@ fn forward_and_backward_agree() {
     }
 }
 
-/// C 71 and 72: parts of an organ get what the whole gets, wherever the scene stands and however it is turned.
+/// C-71, C-72: parts of an organ get what the whole gets, wherever the scene stands and however it is turned.
 #[test]
 fn organs_can_be_cut_turned_and_moved() {
     let (materials, shapes) = leaves();
@@ -681,6 +681,7 @@ fn sensors_read_irradiance() {
     assert_close(a, b, errors[0].hypot(errors[1]), "leaf");
 }
 
+/// C-54, C-64, C-65.
 #[test]
 fn the_dark_the_empty_and_the_impossible() {
     let (materials, shapes) = leaves();

@@ -186,6 +186,7 @@ fn counted(draw: impl Fn(u64) -> Option<ScatterSample>, n: u64) -> Vec<f64> {
     counts
 }
 
+/// C-47: χ² of where samples fall against the density, for every lobe.
 #[test]
 fn samples_follow_the_density() {
     // The density is integrated by a rule with an error of its own of about 1e-3 of each cell; few samples do not see that.
@@ -228,7 +229,7 @@ fn samples_follow_the_density() {
     }
 }
 
-/// The weight that sampling hands out is f · cos / pdf, and the density it states is the density.
+/// C-47: the weight that sampling hands out is f · cos / pdf, and the density it states is the density.
 #[test]
 fn weights_are_value_over_density() {
     let frame = flat();
@@ -272,7 +273,7 @@ fn scattered(material: &Material, frame: &ScatteringFrame, wo: DVec3, n: u64) ->
         .collect()
 }
 
-/// White surfaces: nothing is lost and nothing made. Radiance of an even surrounding is `(n_o/n_i)²` in glass, so flux is asked.
+/// C-46. White surfaces: nothing is lost and nothing made. Radiance of an even surrounding is `(n_o/n_i)²` in glass, so flux is asked.
 #[test]
 fn white_furnace() {
     let white = |m: Material| m;
@@ -314,7 +315,7 @@ fn white_furnace() {
     }
 }
 
-/// Facets lose what would meet a second facet; Phong's lobe loses what would go into the surface. Neither makes light.
+/// C-46. Facets lose what would meet a second facet; Phong's lobe loses what would go into the surface. Neither makes light.
 #[test]
 fn known_deficits() {
     let rough = |roughness| Material::metal(Rgb::WHITE, roughness);
@@ -357,7 +358,7 @@ fn known_deficits() {
 
 // ── symmetry ──
 
-/// f(a, b) = f(b, a); across a boundary the value per squared index of the side it leaves on is symmetric.
+/// C-47: f(a, b) = f(b, a); across a boundary the value per squared index of the side it leaves on is symmetric.
 #[test]
 fn reciprocity() {
     let frame = flat();
@@ -395,7 +396,7 @@ fn reciprocity() {
     }
 }
 
-/// Flux carried one way and radiance gathered the other way along the same path are the same, also under smoothed normals:
+/// C-47: flux carried one way and radiance gathered the other way along the same path are the same, also under smoothed normals:
 /// `value(flux, a → b) / |b · n_g| = value(radiance, b ← a) / |a · n_g|`, both per projected solid angle of the true surface.
 #[test]
 fn flux_is_the_adjoint_of_radiance() {

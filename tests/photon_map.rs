@@ -377,6 +377,7 @@ fn outdoors_agrees_with_the_path_tracer() {
     }
 }
 
+/// C-59.
 #[test]
 fn the_solution_is_the_same_on_any_number_of_threads() {
     let scene = corner();
@@ -403,6 +404,7 @@ fn the_solution_is_the_same_on_any_number_of_threads() {
     assert!(one == on(2) && one == on(3));
 }
 
+/// C-65.
 #[test]
 fn too_many_photons_for_the_memory_are_refused() {
     let scene = corner();

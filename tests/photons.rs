@@ -447,6 +447,7 @@ fn c45_a_lamp_a_million_million_times_weaker_lights_its_own_room() {
     assert_mean("weak", &weak, 1.0, 2);
 }
 
+/// C-59.
 #[test]
 fn photons_are_the_same_on_any_number_of_threads() {
     let scene = full_room();
@@ -476,6 +477,7 @@ fn photons_are_the_same_on_any_number_of_threads() {
     assert_eq!([low.0.0, high.0.0].concat(), one.0.0);
 }
 
+/// C-64.
 #[test]
 fn a_cancelled_trace_stops() {
     let scene = full_room();

@@ -175,6 +175,7 @@ fn tilted(normal_s: DVec3) -> ScatteringFrame {
     }
 }
 
+/// C-47.
 #[test]
 fn materials() {
     let side = |rho, tau| Side {
@@ -239,6 +240,7 @@ fn weights_and_albedo() {
     assert!((albedo - 0.6).abs() < 1e-3, "{albedo}");
 }
 
+/// C-47.
 #[test]
 fn reciprocity_of_leaves() {
     let leaf = Material::leaf(Rgb::new(0.1, 0.2, 0.3), Rgb::new(0.05, 0.4, 0.1));

@@ -207,7 +207,8 @@ pub struct FlyArgs {
     after_help = "Examples:\n  understory validate\n  understory validate --only sky --seed 7 --json checks.json\n\n\
                         Small scenes are looked at by the estimators that make the pictures, and the numbers compared with\n\
                         closed forms: configuration factors, Fresnel's equations, skies, furnaces, lamps.\n\
-                        Exit code 1 if one differs; a right program fails once in a million seeds."
+                        Exit codes: 0 all hold; 1 one differs, as happens to a right program once in a million\n\
+                        seeds; 2 no check is called so; 3 a file could not be written, or it was stopped."
 )]
 pub struct ValidateArgs {
     /// Make only the checks whose names begin so

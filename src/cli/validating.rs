@@ -8,7 +8,7 @@ use crate::pipeline::failure::Failure;
 use crate::pipeline::store::JsonTarget;
 use crate::pipeline::world::World;
 use crate::validation::verdict::FALSE_ALARM;
-use crate::validation::{self, Finding};
+use crate::validation::{self, Check, Finding};
 use serde::Serialize;
 
 /// Keys by which an earlier file of `validate --json` is known.
@@ -40,8 +40,10 @@ pub(super) fn validate(shell: &Shell, args: &ValidateArgs) -> Result<(), Failure
         if let Some(only) = &args.only {
             checks.retain(|check| check.id.starts_with(only));
             if checks.is_empty() {
-                let names = "they begin with factor, lamp, veil, sky, glass, body, furnace, enclosure, cube, ways, sphere, stack";
-                return Err(Failure::Usage(format!("no check has a name that begins with `{only}`: {names}")));
+                return Err(Failure::Usage(format!(
+                    "no check has a name that begins with `{only}`: they begin with {}",
+                    beginnings(&validation::all())
+                )));
             }
         }
         let total = checks.len() as u64;
@@ -51,7 +53,7 @@ pub(super) fn validate(shell: &Shell, args: &ValidateArgs) -> Result<(), Failure
         shell.terminal.ends();
         let findings = found.ok_or(Failure::Stopped)?;
         let seconds = shell.world.now().saturating_sub(start).as_secs_f64();
-        let failed = findings.iter().filter(|finding| !finding.ok).count();
+        let failed = failed(&findings);
         shell.terminal.print(&table(&findings));
         if let Some(json) = &json {
             let protocol = Protocol {
@@ -64,17 +66,40 @@ pub(super) fn validate(shell: &Shell, args: &ValidateArgs) -> Result<(), Failure
             };
             json.write(&shell.world, &protocol)?;
         }
-        if failed > 0 {
-            return Err(Failure::Invalid {
-                failed,
-                checks: findings.len(),
-            });
-        }
+        judge(&findings)?;
         let all = findings.len();
         let line = format!("{all} checks, all hold, seed {seed} ({seconds:.2} s)");
         shell.terminal.note(&line);
         Ok(())
     })
+}
+
+/// How many numbers came out otherwise than on paper.
+fn failed(findings: &[Finding]) -> usize {
+    findings.iter().filter(|finding| !finding.ok).count()
+}
+
+/// A failure if any check failed.
+fn judge(findings: &[Finding]) -> Result<(), Failure> {
+    match failed(findings) {
+        0 => Ok(()),
+        failed => Err(Failure::Invalid {
+            failed,
+            checks: findings.len(),
+        }),
+    }
+}
+
+/// The first words of the checks' names, each once, in their order.
+fn beginnings(checks: &[Check]) -> String {
+    let mut words: Vec<&str> = Vec::new();
+    for check in checks {
+        let word = check.id.split('-').next().unwrap_or_default();
+        if !words.contains(&word) {
+            words.push(word);
+        }
+    }
+    words.join(", ")
 }
 
 /// A line for each finding, under a line of headings.
@@ -128,6 +153,9 @@ fn significant(x: f64, n: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::outcome::show;
+    use crate::cli::terminal::{Manner, ModelOutput, Terminal};
+    use crate::integrator::CancelToken;
 
     #[test]
     fn numbers_are_shown_with_their_significant_digits() {
@@ -146,9 +174,8 @@ mod tests {
         assert_eq!(short(0.000_432), "0.00043");
     }
 
-    #[test]
-    fn a_failed_check_stands_out() {
-        let finding = Finding {
+    fn finding(ok: bool) -> Finding {
+        Finding {
             id: "x".into(),
             what: "what".into(),
             expected: 1.0,
@@ -156,10 +183,27 @@ mod tests {
             standard_error: None,
             tolerance: 0.0,
             observations: 0,
-            ok: false,
+            ok,
             reason: Some("why".into()),
+        }
+    }
+
+    /// What people and scripts rely on: one failed check of many is exit code 1, and the message counts.
+    #[test]
+    fn one_failed_check_fails_the_command() {
+        assert!(judge(&[]).is_ok() && judge(&[finding(true)]).is_ok());
+        let failure = judge(&[finding(true), finding(false), finding(true)]).unwrap_err();
+        let Failure::Invalid { failed, checks } = failure else {
+            panic!("{failure:?}")
         };
-        let text = table(&[finding]);
+        assert_eq!((failed, checks), (1, 3));
+        let terminal = Terminal::new(Manner::Quiet, ModelOutput::Standard, CancelToken::default());
+        assert_eq!(show(&terminal, &failure) as u8, 1);
+    }
+
+    #[test]
+    fn a_failed_check_stands_out() {
+        let text = table(&[finding(false)]);
         assert!(text.lines().nth(1).unwrap().starts_with("FAIL  x"));
         assert!(text.ends_with("what (why)\n"), "{text}");
     }

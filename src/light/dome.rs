@@ -311,6 +311,7 @@ mod tests {
         Environment::daylight(Angle::deg(130.0), Angle::deg(elevation), turbidity, albedo)
     }
 
+    /// C-70.
     #[test]
     fn irradiance_is_the_integral_of_radiance() {
         for (elevation, turbidity) in [(5.0, 2.0), (45.0, 3.0), (88.0, 8.0)] {

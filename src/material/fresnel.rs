@@ -132,6 +132,7 @@ mod tests {
         assert_eq!(n_rows, 12);
     }
 
+    /// C-49, C-50.
     #[test]
     fn brewster_and_critical_angle() {
         // At Brewster's angle only the s-polarised half is reflected.

@@ -570,6 +570,7 @@ mod tests {
         assert_eq!(material.absorptance(true), Rgb::WHITE);
     }
 
+    /// C-53.
     #[test]
     fn a_bent_shading_normal_leaks_no_light() {
         let material = Material::lambert(Rgb::WHITE);

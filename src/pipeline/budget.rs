@@ -62,6 +62,7 @@ mod tests {
     use crate::options::Origin;
     use crate::pipeline::world::fake::FakeWorld;
 
+    /// C-65.
     #[test]
     fn absurd_pictures_are_refused_before_memory_is_asked_for() {
         let world = FakeWorld::default();

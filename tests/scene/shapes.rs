@@ -415,6 +415,7 @@ fn degenerate_triangles_and_needles_do_no_harm() {
     assert_eq!(only_degenerate.closest(&ray), None);
 }
 
+/// C-54.
 #[test]
 fn what_is_empty_answers_nothing() {
     let no_groups = Scene::build(SceneDescription::default()).unwrap();
