@@ -118,6 +118,17 @@ pub struct DeriveArgs {
     pub manners: Manners,
 }
 
+/// Files with the light that all cameras share.
+#[derive(Debug, Args)]
+pub struct SolutionArgs {
+    /// Take the light of photon mapping from this file instead of solving it; refused if it is of anything else than this model
+    #[arg(long, value_name = "FILE")]
+    pub solution: Option<PathBuf>,
+    /// Write the light of photon mapping into this file, for other cameras
+    #[arg(long, value_name = "FILE")]
+    pub save_solution: Option<PathBuf>,
+}
+
 /// `render`
 #[derive(Debug, Args)]
 #[command(
@@ -142,6 +153,9 @@ pub struct RenderArgs {
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub light: SolutionArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -196,6 +210,9 @@ pub struct FlyArgs {
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub light: SolutionArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,

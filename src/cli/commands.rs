@@ -1,6 +1,8 @@
 //! The commands that run once.
 
-use super::args::{CheckArgs, DeriveArgs, FlyArgs, LightArgs, ModelArg, Print, RenderArgs};
+use super::args::{
+    CheckArgs, DeriveArgs, FlyArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs,
+};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
@@ -11,7 +13,8 @@ use crate::pipeline::growing;
 use crate::pipeline::lighting;
 use crate::pipeline::making::{Made, Partial};
 use crate::pipeline::report::{LIGHT_REPORT_KEYS, LightReport, Phase};
-use crate::pipeline::store::{CsvTarget, JsonTarget, PictureTarget};
+use crate::pipeline::solving::SolutionFiles;
+use crate::pipeline::store::{CsvTarget, JsonTarget, PictureTarget, SolutionTarget};
 use crate::pipeline::studio::{Keep, Run, Studio};
 use crate::pipeline::viewpoint;
 use crate::pipeline::world::{Entry, World};
@@ -96,7 +99,9 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     let target = PictureTarget::new(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
     let mut studio = studio(shell, &args.model)?;
+    studio.solution_files = solution_files(shell, &args.light, output)?;
     run(shell, &mut studio, |studio, run| {
+        studio.solution_files.check(&run.options)?;
         check_wishes(&shell.world, run)?;
         let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
         shell.report(report.as_ref(), run, &studio.seconds, &made)?;
@@ -117,7 +122,9 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
     check_folder(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
     let mut studio = studio(shell, &args.model)?;
+    studio.solution_files = solution_files(shell, &args.light, output)?;
     run(shell, &mut studio, |studio, run| {
+        studio.solution_files.check(&run.options)?;
         if !run.options.orbit.value {
             let message = "a flight needs a path: `--orbit` flies once round the model";
             return Err(Failure::Usage(message.into()));
@@ -212,6 +219,24 @@ fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure>
     let mut studio = Studio::new(&shell.world, shell.terminal.clone(), path, Keep::Last);
     studio.access = model.access()?;
     Ok(studio)
+}
+
+/// Where the light that all cameras share comes from and goes to.
+fn solution_files(
+    shell: &Shell,
+    args: &SolutionArgs,
+    output: &Path,
+) -> Result<SolutionFiles, Failure> {
+    let save = args.save_solution.as_deref();
+    if save == Some(output) {
+        let message = "the picture and the solution cannot be the same file";
+        return Err(Failure::Usage(message.into()));
+    }
+    let save = save.map(|save| SolutionTarget::new(&shell.world, save));
+    Ok(SolutionFiles {
+        read: args.solution.clone(),
+        save: save.transpose()?,
+    })
 }
 
 fn finished(made: &Made) -> Result<(), Failure> {

@@ -142,6 +142,7 @@ impl Shell {
             made.effort,
             made.hash,
         )
+        .solved(made.solution)
         .warning(&made.warnings);
         target.write(&self.world, &report)
     }

@@ -4,6 +4,9 @@
 //! [`RadianceEstimator`], which answers one question: how much light arrives along this ray? [`driver::render_view`] asks
 //! it for every sample of every pixel; it alone knows of tiles, threads, progress and cancellation.
 //!
+//! Methods whose view-independent work is large do it in two steps: [`solve`](Integrator::solve) gives a [`Solution`], which borrows
+//! nothing and can be kept or saved, and [`view`](Integrator::view) looks at it.
+//!
 //! Every method is asked through the same ray queries of the [`scene`](crate::scene), the same sources ([`sources`]) and the
 //! same [`sampler`](crate::sampler), so that a fix is made once.
 
@@ -19,12 +22,14 @@ pub mod photon;
 pub mod photon_map;
 pub mod raytracer;
 pub mod requirements;
+mod solution;
 pub mod sources;
 
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
 pub use path::Path;
 pub use photon_map::PhotonMapping;
 pub use raytracer::Raytracer;
+pub use solution::{Solution, Unreadable};
 
 use crate::color::Rgb;
 use crate::math::Ray;
@@ -42,6 +47,37 @@ pub trait Integrator {
         scene: &'s Scene,
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError>;
+
+    /// The first step of [`prepare`](Self::prepare): what is found out about the scene once, whatever the camera and whatever the
+    /// settings that only views need. Methods without a solution find out nothing.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    fn solve(&self, _scene: &Scene, _context: &RenderContext<'_>) -> Result<Solution, RenderError> {
+        Ok(Solution::Nothing)
+    }
+
+    /// The second step: makes ready for rays what [`solve`](Self::solve) found out about the same scene. Methods without a solution
+    /// do all their work here; so does any method that is given the solution of another.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    fn view<'s>(
+        &self,
+        scene: &'s Scene,
+        _solution: &Solution,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        self.prepare(scene, context)
+    }
+
+    /// The solution that [`Solution::to_bytes`] made these bytes of.
+    ///
+    /// # Errors
+    /// If they are not those of a solution of this method.
+    fn restore(&self, _bytes: &[u8]) -> Result<Solution, Unreadable> {
+        Err(Unreadable("this method has no solutions"))
+    }
 
     /// What pictures of `scene` by this method will lack without showing it, for people; nothing by default.
     fn shortcomings(&self, _scene: &Scene) -> Vec<&'static str> {

@@ -94,6 +94,8 @@ pub enum Stage {
     Growth,
     /// Setting up the scene.
     Scene,
+    /// Solving the light for all cameras.
+    Solution,
     /// Taking the picture.
     View,
     /// Moving the camera from frame to frame.
@@ -226,7 +228,7 @@ options! {
     fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
 
     /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap) or `raytracer` (direct light, mirrors and glass: fast)
-    renderer: Renderer = "path", "renderer", "NAME", Render, View, PICTURING;
+    renderer: Renderer = "path", "renderer", "NAME", Render, Solution, PICTURING;
     /// Preset: `draft`, `preview` or `final`
     quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
     /// Size of the picture in pixels
@@ -240,11 +242,11 @@ options! {
     /// How often the ray tracer and photon mapping follow a ray through mirrors and glass
     recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, PICTURING;
     /// Photons that photon mapping sends to all surfaces
-    global_photons: PhotonCount = "1000000", "global-photons", "N", Render, View, PICTURING;
+    global_photons: PhotonCount = "1000000", "global-photons", "N", Render, Solution, PICTURING;
     /// Photons that it sends to mirrors and glass for caustics; `auto`: a million where there are any
-    caustic_photons: Option<PhotonCount> = "auto", "caustic-photons", "N", Render, View, PICTURING;
+    caustic_photons: Option<PhotonCount> = "auto", "caustic-photons", "N", Render, Solution, PICTURING;
     /// Area of surface over which photons are averaged, in square metres (GroIMP's *Photon area*); `auto`: one that holds about 100
-    photon_area: Option<Area> = "auto", "photon-area", "M2", Render, View, PICTURING;
+    photon_area: Option<Area> = "auto", "photon-area", "M2", Render, Solution, PICTURING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
@@ -369,9 +371,13 @@ mod tests {
         assert_eq!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
         other.set("eye", "1,2,4", Origin::Flag).unwrap();
         assert_ne!(one.fingerprint(Stage::View), other.fingerprint(Stage::View));
-        assert_eq!(
-            one.fingerprint(Stage::Growth),
-            other.fingerprint(Stage::Growth)
+        for stage in [Stage::Growth, Stage::Scene, Stage::Solution] {
+            assert_eq!(one.fingerprint(stage), other.fingerprint(stage));
+        }
+        other.set("global-photons", "5", Origin::Flag).unwrap();
+        assert_ne!(
+            one.fingerprint(Stage::Solution),
+            other.fingerprint(Stage::Solution)
         );
     }
 }

@@ -24,6 +24,12 @@ impl ContentHash {
         Self(hash)
     }
 
+    /// The hash as bytes.
+    #[must_use]
+    pub fn to_bytes(self) -> [u8; 16] {
+        self.0.to_le_bytes()
+    }
+
     /// The hash of this and a text.
     #[must_use]
     pub fn with(self, text: &str) -> Self {

@@ -4,7 +4,7 @@ use super::audience::Audience;
 use super::content_hash::ContentHash;
 use super::exposing;
 use super::failure::Failure;
-use super::report::{Effort, Phase};
+use super::report::{Effort, Phase, SolutionFacts};
 use super::store::PictureTarget;
 use super::studio::{Run, Studio};
 use super::viewing::Viewing;
@@ -36,6 +36,8 @@ pub struct Made {
     pub n_made: u32,
     /// What the pictures lack without showing it.
     pub warnings: Vec<&'static str>,
+    /// The light that they share.
+    pub solution: SolutionFacts,
 }
 
 /// What becomes of a picture that was stopped before it had all its samples.
@@ -111,8 +113,9 @@ impl Making<'_> {
         let warnings = self.warn(run, &viewing, &scene);
 
         self.audience.begins("preparing");
+        let solved = studio.solve(run, &scene, &viewing)?;
         let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
-            let prepared = viewing.prepare(&scene)?;
+            let prepared = viewing.prepare(&scene, &solved.solution)?;
             let exposure = viewing.exposure(&scene, &prepared, &camera)?;
             Ok::<_, Failure>((prepared, exposure))
         })?;
@@ -136,6 +139,7 @@ impl Making<'_> {
             n_kept: 0,
             n_made: 1,
             warnings,
+            solution: solved.facts,
         })
     }
 
@@ -160,9 +164,10 @@ impl Making<'_> {
 
         // The exposure is that of the flight's first frame, whichever frames are made: it never flickers.
         self.audience.begins("preparing");
+        let solved = studio.solve(run, &scene, &viewing)?;
         let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
             let camera = viewpoint::camera(&run.sources, &run.options, &flight.view(0))?;
-            let prepared = viewing.prepare(&scene)?;
+            let prepared = viewing.prepare(&scene, &solved.solution)?;
             let exposure = viewing.exposure(&scene, &prepared, &camera)?;
             Ok::<_, Failure>((prepared, exposure))
         })?;
@@ -176,6 +181,7 @@ impl Making<'_> {
         };
         let mut film = FilmProgress {
             warnings,
+            solution: solved.facts,
             ..FilmProgress::default()
         };
         audience.audience.begins("flying");
@@ -256,6 +262,7 @@ struct FilmProgress {
     n_kept: u32,
     n_made: u32,
     warnings: Vec<&'static str>,
+    solution: SolutionFacts,
 }
 
 impl FilmProgress {
@@ -278,6 +285,7 @@ impl FilmProgress {
             n_kept: self.n_kept,
             n_made: self.n_made,
             warnings: self.warnings,
+            solution: self.solution,
         }
     }
 }

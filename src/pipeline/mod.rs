@@ -1,8 +1,8 @@
 //! From a model on disk to a picture on disk: the stages, what each depends on, and all contact with the machine.
 //!
-//! read → check → derive → describe → build → prepare → view → write. Each stage is keyed by what it depends on (texts,
+//! read → check → derive → describe → build → solve → view → write. Each stage is keyed by what it depends on (texts,
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed: a
-//! [`Studio`](studio::Studio) keeps the stages up to the scene, [`Making`](making::Making) takes pictures of it.
+//! [`Studio`](studio::Studio) keeps the stages up to the light that all cameras share, [`Making`](making::Making) takes pictures of it.
 
 pub mod assets;
 pub mod audience;
@@ -19,6 +19,8 @@ pub mod making;
 pub mod packed;
 pub mod project_files;
 pub mod report;
+pub mod solution_file;
+pub mod solving;
 pub mod sources;
 pub mod store;
 pub mod studio;

@@ -121,6 +121,27 @@ impl Effort {
     }
 }
 
+/// Where the light that all cameras share came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolutionOrigin {
+    /// It was solved for this run.
+    Made,
+    /// It was there from the run before.
+    Kept,
+    /// It was read from a file.
+    Read,
+}
+
+/// The light that all cameras share, as reports tell of it. All `None` for methods that have none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SolutionFacts {
+    /// Where it came from.
+    pub origin: Option<SolutionOrigin>,
+    /// Photons emitted and photons stored for it, whenever that was.
+    pub photons: Option<(u64, u64)>,
+}
+
 #[derive(Serialize)]
 struct OptionValue<'a> {
     value: &'a str,
@@ -137,9 +158,13 @@ pub struct Report<'a> {
     seconds: &'a PhaseSeconds,
     rays: u64,
     samples_per_pixel: u32,
-    /// No method of this version emits photons.
+    /// Where the light that all cameras share came from.
+    solution: Option<SolutionOrigin>,
+    /// How often it was solved: 1 for all frames of a film, 0 if it was there already.
+    solves: u32,
+    /// Photons emitted for it.
     photons_emitted: Option<u64>,
-    /// No method of this version stores photons.
+    /// Photons stored for it.
     photons_stored: Option<u64>,
     /// No method of this version has patches.
     patches: Option<u64>,
@@ -258,6 +283,8 @@ impl<'a> Report<'a> {
             seconds,
             rays: effort.n_rays,
             samples_per_pixel: effort.samples_per_pixel,
+            solution: None,
+            solves: 0,
             photons_emitted: None,
             photons_stored: None,
             patches: None,
@@ -266,6 +293,18 @@ impl<'a> Report<'a> {
             peak_memory_bytes: world.peak_memory(),
             image_hash: image.to_string(),
             warnings: &[],
+        }
+    }
+
+    /// The same report, which also tells of the light that all cameras share.
+    #[must_use]
+    pub fn solved(self, facts: SolutionFacts) -> Self {
+        Self {
+            solution: facts.origin,
+            solves: u32::from(facts.origin == Some(SolutionOrigin::Made)),
+            photons_emitted: facts.photons.map(|(emitted, _)| emitted),
+            photons_stored: facts.photons.map(|(_, stored)| stored),
+            ..self
         }
     }
 

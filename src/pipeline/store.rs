@@ -2,6 +2,7 @@
 
 use super::content_hash::ContentHash;
 use super::failure::Failure;
+use super::solution_file::MAGIC;
 use super::world::{Entry, World, folder_of};
 use crate::image::format::MAGIC_LENGTH;
 use crate::image::{Format, Picture, encode};
@@ -104,6 +105,41 @@ impl JsonTarget {
         let text = serde_json::to_string_pretty(object)
             .map_err(|error| Failure::World(format!("cannot encode as JSON: {error}")))?;
         put(world, &self.path, format!("{text}\n").as_bytes())
+    }
+}
+
+/// A file with a solution to be.
+#[derive(Clone, Debug)]
+pub struct SolutionTarget {
+    path: PathBuf,
+}
+
+impl SolutionTarget {
+    /// A file with a solution at `path`; an earlier one is known by its first bytes.
+    ///
+    /// # Errors
+    /// If files cannot be made there, or something else is there already.
+    pub fn new(world: &dyn World, path: &Path) -> Result<Self, Failure> {
+        let target = Self {
+            path: path.to_owned(),
+        };
+        target.check(world)?;
+        Ok(target)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there before is then untouched.
+    pub fn write(&self, world: &dyn World, bytes: &[u8]) -> Result<(), Failure> {
+        self.check(world)?;
+        put(world, &self.path, bytes)
+    }
+
+    fn check(&self, world: &dyn World) -> Result<(), Failure> {
+        may_write(world, &self.path, "an earlier solution", |head| {
+            head.starts_with(MAGIC)
+        })
     }
 }
 

@@ -9,13 +9,14 @@ use super::growing::{self, Drawn};
 use super::inputs::Inputs;
 use super::project_files::{self, Access, ProjectFiles};
 use super::report::{Phase, PhaseSeconds};
+use super::solving::SolutionFiles;
 use super::sources::Sources;
 use super::surroundings::Outdoors;
 use super::world::{World, folder_of};
 use crate::check::model::Model;
 use crate::diag::Diagnostics;
 use crate::growth::Growth;
-use crate::integrator::CancelToken;
+use crate::integrator::{CancelToken, Solution};
 use crate::interpret::Purpose;
 use crate::light::SkyImage;
 use crate::options::surroundings::SkyKind;
@@ -62,11 +63,15 @@ pub struct Studio<'w> {
     pub(super) world: &'w dyn World,
     pub(super) audience: Arc<dyn Audience>,
     path: PathBuf,
-    keep: Keep,
+    pub(super) keep: Keep,
     /// What the model may use besides its own folder, and where its charts go.
     pub access: Access,
     drawn: Option<(ContentHash, Drawn)>,
-    scene: Option<(ContentHash, Arc<Scene>)>,
+    pub(super) scene: Option<(ContentHash, Arc<Scene>)>,
+    /// The light of that scene, with the key of both.
+    pub(super) solution: Option<(ContentHash, Solution)>,
+    /// Where the light is read from and written to.
+    pub solution_files: SolutionFiles,
     /// Time spent since this was last reset.
     pub seconds: PhaseSeconds,
 }
@@ -93,9 +98,9 @@ impl Run {
 
     /// Equal for runs with the same picture, of this version of the program.
     pub fn picture_key(&self) -> ContentHash {
-        let options = self.options.fingerprint(Stage::View);
         self.scene_key()
-            .with(&options)
+            .with(&self.options.fingerprint(Stage::Solution))
+            .with(&self.options.fingerprint(Stage::View))
             .with(env!("CARGO_PKG_VERSION"))
     }
 
@@ -137,6 +142,8 @@ impl<'w> Studio<'w> {
             access: Access::default(),
             drawn: None,
             scene: None,
+            solution: None,
+            solution_files: SolutionFiles::default(),
             seconds,
         }
     }
@@ -241,6 +248,7 @@ impl<'w> Studio<'w> {
             return Ok(scene.clone());
         }
         self.scene = None;
+        self.solution = None;
         let mut drawn = self.draw(run, cancel)?;
         self.audience.begins("building the scene");
         let panorama = panorama
@@ -291,7 +299,7 @@ impl<'w> Studio<'w> {
 
     /// The panorama that the options name, as a file. Its path starts at the folder of who wrote it: the file beside the
     /// model, or the user.
-    fn panorama(&self, run: &Run) -> Result<Option<(PathBuf, Vec<u8>)>, Failure> {
+    pub(super) fn panorama(&self, run: &Run) -> Result<Option<(PathBuf, Vec<u8>)>, Failure> {
         let SkyKind::Image(path) = &run.options.sky.value else {
             return Ok(None);
         };

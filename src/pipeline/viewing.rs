@@ -12,7 +12,7 @@ use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_vie
 use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
     CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Raytracer,
-    RenderContext, RenderError,
+    RenderContext, RenderError, Solution, Unreadable,
 };
 use crate::options::Options;
 use crate::options::value::{GridSize, Renderer};
@@ -61,21 +61,46 @@ pub struct Shot {
 }
 
 impl Viewing<'_> {
-    /// Does the work that does not depend on the camera.
+    /// Solves the light that all cameras share.
     ///
     /// # Errors
-    /// If it was stopped.
-    pub fn prepare<'s>(&self, scene: &'s Scene) -> Result<Prepared<'s>, Failure> {
+    /// If it was stopped, or needs more memory than there is.
+    pub fn solve(&self, scene: &Scene) -> Result<Solution, Failure> {
         let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
         let mut method = method(self.options);
         if let Method::Photon(photon_mapping) = &mut method {
             let memory = budget::memory(self.world, self.options);
             photon_mapping.most_stored = memory / BYTES_PER_PHOTON;
         }
-        let prepared = method
+        let solution = method
             .integrator()
-            .prepare(scene, &self.context(self.cancel, &report));
-        match prepared {
+            .solve(scene, &self.context(self.cancel, &report));
+        solution.map_err(|error| failure(&error))
+    }
+
+    /// The solution that [`Solution::to_bytes`] made these bytes of, by the same method.
+    ///
+    /// # Errors
+    /// If they are not those of such a solution.
+    pub fn restore(&self, bytes: &[u8]) -> Result<Solution, Unreadable> {
+        method(self.options).integrator().restore(bytes)
+    }
+
+    /// Makes the light that all cameras share ready for looking at it.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn prepare<'s>(
+        &self,
+        scene: &'s Scene,
+        solution: &Solution,
+    ) -> Result<Prepared<'s>, Failure> {
+        let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
+        let context = self.context(self.cancel, &report);
+        let view = method(self.options)
+            .integrator()
+            .view(scene, solution, &context);
+        match view {
             Ok(estimator) => Ok(Prepared { estimator }),
             Err(error) => Err(failure(&error)),
         }

@@ -40,6 +40,12 @@ pub trait World: Sync {
     /// If it cannot be read, or is absurdly large.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
+    /// The content of a file of at most so many bytes, however large models may be.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is larger.
+    fn read_up_to(&self, path: &Path, most: u64) -> io::Result<Vec<u8>>;
+
     /// Something that reads files as [`read`](Self::read) does and can be given away.
     fn reader(&self) -> ReadFile;
 
@@ -122,11 +128,16 @@ impl Machine {
 
 /// The content of a file on the disk.
 fn whole(path: &Path) -> io::Result<Vec<u8>> {
+    not_too_large(beginning(path, LARGEST_FILE + 1)?)
+}
+
+/// The content of a file on the disk, or as many bytes of it.
+fn beginning(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut content = Vec::new();
     std::fs::File::open(path)?
-        .take(LARGEST_FILE + 1)
+        .take(most)
         .read_to_end(&mut content)?;
-    not_too_large(content)
+    Ok(content)
 }
 
 fn not_too_large(content: Vec<u8>) -> io::Result<Vec<u8>> {
@@ -175,6 +186,17 @@ impl World for Machine {
             Some((packed, inside)) => not_too_large(packed?.read(inside, LARGEST_FILE + 1)?),
             None => whole(path),
         }
+    }
+
+    fn read_up_to(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+        let content = match self.packed(path) {
+            Some((packed, inside)) => packed?.read(inside, most.saturating_add(1))?,
+            None => beginning(path, most.saturating_add(1))?,
+        };
+        if content.len() as u64 > most {
+            return Err(io::Error::other("it is larger than memory allows"));
+        }
+        Ok(content)
     }
 
     fn reader(&self) -> ReadFile {
@@ -347,6 +369,10 @@ pub(crate) mod fake {
                 .get(path)
                 .cloned()
                 .ok_or_else(|| io::ErrorKind::NotFound.into())
+        }
+
+        fn read_up_to(&self, path: &Path, _: u64) -> io::Result<Vec<u8>> {
+            self.read(path)
         }
 
         fn reader(&self) -> ReadFile {

@@ -102,7 +102,8 @@ impl Opened {
             options: &run.options,
             cancel: &cancel,
         };
-        let prepared = viewing.prepare(&scene).unwrap();
+        let solution = viewing.solve(&scene).unwrap();
+        let prepared = viewing.prepare(&scene, &solution).unwrap();
         let shot = viewing.shoot(&prepared, &camera).unwrap();
         Drawn {
             image: shot.image,

@@ -53,6 +53,16 @@ struct Measured {
 pub(super) struct Hidden(u128);
 
 impl Hidden {
+    /// The cells as bits.
+    pub(super) fn bits(self) -> u128 {
+        self.0
+    }
+
+    /// The cells of these bits; `None` if there are no such cells.
+    pub(super) fn from_bits(bits: u128) -> Option<Self> {
+        (bits >> (3 * FINE_RINGS * FINE_RINGS) == 0).then_some(Self(bits))
+    }
+
     /// Whether none is.
     pub(super) fn is_none(self) -> bool {
         self.0 == 0

@@ -44,6 +44,11 @@ impl<T: Copy> Grid<T> {
         }
     }
 
+    /// All things, in an order that sorting them again keeps.
+    pub(super) fn things(&self) -> &[T] {
+        &self.things
+    }
+
     /// Shows `visit` all things that may be within the grid's radius of `center`, each once, and some that are not.
     pub(super) fn near(&self, center: DVec3, mut visit: impl FnMut(&T)) {
         let n_slots = self.starts.len() - 1;

@@ -7,7 +7,7 @@
 use super::estimate::{self, Hidden};
 use super::grid::{Grid, cell};
 use super::radius::kernel_radius;
-use super::stored::{Stored, facing};
+use super::stored::{PackedNormal, Stored, facing};
 use crate::color::Rgb;
 use crate::math::frame::Frame;
 use crate::math::{PrimitiveId, Ray};
@@ -21,6 +21,9 @@ const SPACING: f64 = 1.0 / 3.0;
 /// How far a sample is used, in spacings: every point of a cell is that near to the sample in the cell.
 const USE: f64 = 2.0;
 
+/// Weight of samples of one layer that need no help of coarser ones: that of one sample half a spacing away.
+const ENOUGH: f64 = 0.88;
+
 /// Least cosine between the normals of a point and of a sample it takes light from.
 const SAME_NORMAL: f64 = 0.9;
 
@@ -32,16 +35,46 @@ const LIFT: f64 = 0.1;
 
 /// Irradiance at one place.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+pub(super) struct Sample {
     position: Vec3,
     normal: Vec3,
+    /// The normal as it was found, which tells `normal` exactly.
+    packed: PackedNormal,
     irradiance: Vec3,
     /// Radius of its kernel, metres, and what is hidden from it there.
     radius: f32,
     hidden: Hidden,
 }
 
+/// All that makes a sample: position, normal, irradiance, radius and what is hidden.
+pub(super) type SampleParts = (Vec3, PackedNormal, Vec3, f32, Hidden);
+
 impl Sample {
+    /// The sample of these parts.
+    pub(super) fn of((position, packed, irradiance, radius, hidden): SampleParts) -> Self {
+        Self {
+            position,
+            normal: packed.unpack().as_vec3(),
+            packed,
+            irradiance,
+            radius,
+            hidden,
+        }
+    }
+
+    /// What it is made of.
+    pub(super) fn parts(&self) -> SampleParts {
+        let Self {
+            position,
+            packed,
+            irradiance,
+            radius,
+            hidden,
+            ..
+        } = *self;
+        (position, packed, irradiance, radius, hidden)
+    }
+
     /// Whether something stands between it and a point, both relative to `center`. A ray just above the surface tells, but only
     /// where anything at all stands near the sample.
     fn is_hidden(&self, scene: &Scene, center: DVec3, point: DVec3) -> bool {
@@ -63,20 +96,70 @@ impl Sample {
 
 /// Irradiance of one side of a small flat piece: by its number and the side (front first).
 #[derive(Clone, Copy, Debug)]
-struct PieceLight {
-    key: (PrimitiveId, bool),
-    irradiance: Rgb,
+pub(super) struct PieceLight {
+    /// The piece, and whether it is the back.
+    pub(super) key: (PrimitiveId, bool),
+    /// W/m².
+    pub(super) irradiance: Rgb,
+}
+
+/// Samples of one density.
+#[derive(Debug)]
+pub(super) struct Layer {
+    spacing: f64,
+    samples: Grid<Sample>,
 }
 
 /// The light of one map.
 #[derive(Debug)]
 pub(super) struct IrradianceMap {
-    center: DVec3,
-    radius: f64,
-    spacing: f64,
-    samples: Grid<Sample>,
+    /// What positions are relative to.
+    pub(super) center: DVec3,
+    /// Flat pieces of up to twice this size have one irradiance for each side, metres.
+    pub(super) radius: f64,
+    /// The finest first.
+    pub(super) layers: Vec<Layer>,
     /// Sorted by key.
-    pieces: Vec<PieceLight>,
+    pub(super) pieces: Vec<PieceLight>,
+}
+
+impl Layer {
+    /// A layer of samples that are about `spacing` metres apart.
+    pub(super) fn new(samples: Vec<Sample>, spacing: f64) -> Self {
+        let place = |sample: &Sample| sample.position.as_dvec3();
+        Self {
+            spacing,
+            samples: Grid::new(samples, USE * spacing, place),
+        }
+    }
+
+    /// Metres between samples.
+    pub(super) fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// All samples, in an order that [`new`](Self::new) keeps.
+    pub(super) fn samples(&self) -> &[Sample] {
+        self.samples.things()
+    }
+
+    /// Weighted sum of the irradiance near a point, and the weights.
+    fn near(&self, scene: &Scene, center: DVec3, position: DVec3, normal: DVec3) -> (DVec3, f64) {
+        let reach = USE * self.spacing;
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        self.samples.near(position, |sample| {
+            let to = sample.position.as_dvec3() - position;
+            let share = to.length_squared() / (reach * reach);
+            let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
+                && to.dot(normal).abs() <= THICKNESS * self.spacing;
+            if share < 1.0 && is_same && !sample.is_hidden(scene, center, position) {
+                let weight = (1.0 - share) * (1.0 - share);
+                sum += sample.irradiance.as_dvec3() * weight;
+                weights += weight;
+            }
+        });
+        (sum, weights)
+    }
 }
 
 impl IrradianceMap {
@@ -103,20 +186,20 @@ impl IrradianceMap {
             let own = radius.min(place.flat_extent());
             let at = (position, normal);
             let (light, hidden) = estimate::irradiance(scene, &photons, center, at, own);
-            Sample {
-                position: position.as_vec3(),
-                normal: normal.as_vec3(),
-                irradiance: DVec3::from_array(light.to_array()).as_vec3(),
-                radius: own as f32,
+            let light = DVec3::from_array(light.to_array()).as_vec3();
+            Sample::of((
+                position.as_vec3(),
+                place.packed_normal(),
+                light,
+                own as f32,
                 hidden,
-            }
+            ))
         };
         let samples: Vec<Sample> = places.par_iter().map(sample).collect();
         Some(Self {
             center,
             radius,
-            spacing,
-            samples: Grid::new(samples, USE * spacing, |sample| sample.position.as_dvec3()),
+            layers: vec![Layer::new(samples, spacing)],
             pieces,
         })
     }
@@ -138,19 +221,18 @@ impl IrradianceMap {
             return found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance);
         }
         let position = point.position - self.center;
-        let reach = USE * self.spacing;
+        // Where there are fine samples they count; coarser ones fill what they leave.
+        let mut left = 1.0;
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        self.samples.near(position, |sample| {
-            let to = sample.position.as_dvec3() - position;
-            let share = to.length_squared() / (reach * reach);
-            let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
-                && to.dot(normal).abs() <= THICKNESS * self.spacing;
-            if share < 1.0 && is_same && !sample.is_hidden(scene, self.center, position) {
-                let weight = (1.0 - share) * (1.0 - share);
-                sum += sample.irradiance.as_dvec3() * weight;
-                weights += weight;
+        for layer in &self.layers {
+            let (more, weight) = layer.near(scene, self.center, position, normal);
+            sum += more * left;
+            weights += weight * left;
+            left *= (1.0 - weight / ENOUGH).max(0.0);
+            if left == 0.0 {
+                break;
             }
-        });
+        }
         if weights > 0.0 {
             Rgb::from_array((sum / weights).to_array())
         } else {

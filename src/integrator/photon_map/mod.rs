@@ -13,6 +13,7 @@
 //! stored      which photons are stored              radius      how large the kernel is
 //! grid        photons and samples by place          estimate    irradiance over the real area
 //! irradiance  precomputed, asked by views           view        from the camera to the maps
+//! solution    all of it, kept and as bytes
 //! ```
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
@@ -21,18 +22,21 @@ mod estimate;
 mod grid;
 mod irradiance;
 mod radius;
+mod solution;
 mod stored;
 mod view;
 
 use super::medium::Bodies;
 use super::photon::{Aim, Emission, Photons, trace};
 use super::sources::Sources;
-use super::{Integrator, RadianceEstimator, RenderContext, RenderError};
+use super::{Integrator, RadianceEstimator, RenderContext, RenderError, Solution, Unreadable};
 use crate::material::Material;
 use crate::math::rng;
 use crate::scene::Scene;
 use glam::DVec3;
 use irradiance::IrradianceMap;
+pub use solution::PhotonSolution;
+use std::sync::Arc;
 use stored::{Collector, Stored, Wanted};
 use view::View;
 
@@ -72,26 +76,36 @@ impl Default for PhotonMapping {
     }
 }
 
-/// The maps of a scene.
-#[derive(Debug, Default)]
-struct Maps {
-    global: Option<IrradianceMap>,
-    caustic: Option<IrradianceMap>,
-}
-
 impl Integrator for PhotonMapping {
     fn prepare<'s>(
         &self,
         scene: &'s Scene,
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
-        Ok(Box::new(View {
-            scene,
-            sources: Sources::new(scene),
-            bodies: Bodies::new(scene),
-            maps: self.solve(scene, context)?,
-            max_depth: self.max_depth,
-        }))
+        let solution = self.solution(scene, context)?;
+        Ok(Box::new(self.look(scene, Arc::new(solution))))
+    }
+
+    fn solve(&self, scene: &Scene, context: &RenderContext<'_>) -> Result<Solution, RenderError> {
+        let solution = self.solution(scene, context)?;
+        Ok(Solution::Photons(Arc::new(solution)))
+    }
+
+    fn view<'s>(
+        &self,
+        scene: &'s Scene,
+        solution: &Solution,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        match solution {
+            Solution::Photons(maps) => Ok(Box::new(self.look(scene, maps.clone()))),
+            Solution::Nothing => self.prepare(scene, context),
+        }
+    }
+
+    fn restore(&self, bytes: &[u8]) -> Result<Solution, Unreadable> {
+        let solution = PhotonSolution::from_bytes(bytes)?;
+        Ok(Solution::Photons(Arc::new(solution)))
     }
 }
 
@@ -107,29 +121,47 @@ impl PhotonMapping {
         }
     }
 
-    fn solve(&self, scene: &Scene, context: &RenderContext<'_>) -> Result<Maps, RenderError> {
+    fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>) -> View<'s> {
+        View {
+            scene,
+            sources: Sources::new(scene),
+            bodies: Bodies::new(scene),
+            maps,
+            max_depth: self.max_depth,
+        }
+    }
+
+    fn solution(
+        &self,
+        scene: &Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<PhotonSolution, RenderError> {
         let n_caustic = self.caustic_photons_of(scene);
         let wanted = if n_caustic == 0 {
             Wanted::Indirect
         } else {
             Wanted::IndirectWithoutCaustics
         };
-        Ok(Maps {
-            global: self.map(scene, wanted, self.global_photons, context)?,
-            caustic: self.map(scene, Wanted::Caustics, n_caustic, context)?,
+        let (global, n_global_stored) = self.map(scene, wanted, self.global_photons, context)?;
+        let (caustic, n_caustic_stored) = self.map(scene, Wanted::Caustics, n_caustic, context)?;
+        Ok(PhotonSolution {
+            global,
+            caustic,
+            emitted: self.global_photons + n_caustic,
+            stored: n_global_stored + n_caustic_stored,
         })
     }
 
-    /// Follows `n` photons and makes those that are wanted ready.
+    /// Follows `n` photons and makes those that are wanted ready; tells how many these are.
     fn map(
         &self,
         scene: &Scene,
         wanted: Wanted,
         n: u64,
         context: &RenderContext<'_>,
-    ) -> Result<Option<IrradianceMap>, RenderError> {
+    ) -> Result<(Option<IrradianceMap>, u64), RenderError> {
         if n == 0 {
-            return Ok(None);
+            return Ok((None, 0));
         }
         let aim = match wanted {
             Wanted::Caustics => Aim::Specular,
@@ -170,6 +202,7 @@ impl PhotonMapping {
                 most: self.most_stored,
             });
         }
-        Ok(IrradianceMap::new(scene, stored, center, self.photon_area))
+        let map = IrradianceMap::new(scene, stored, center, self.photon_area);
+        Ok((map, n_stored))
     }
 }

@@ -7,13 +7,31 @@ use crate::math::PrimitiveId;
 use crate::scene::{Piece, Scene};
 use glam::{DVec3, Vec3};
 
+/// A unit normal; 16 bits per coordinate are good to 0.002°.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct PackedNormal(pub(super) [i16; 3]);
+
+impl PackedNormal {
+    /// Packs a unit vector.
+    pub(super) fn new(normal: DVec3) -> Self {
+        let scaled = (normal * f64::from(i16::MAX)).round();
+        Self(scaled.to_array().map(|c| c as i16))
+    }
+
+    /// The unit vector; up, if there is none.
+    pub(super) fn unpack(self) -> DVec3 {
+        let [x, y, z] = self.0.map(f64::from);
+        DVec3::new(x, y, z).normalize_or(DVec3::Z)
+    }
+}
+
 /// A photon on a matt surface, in 40 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stored {
     /// Relative to the middle of the scene.
     position: Vec3,
-    /// Unit normal of the side that it met; 16 bits per coordinate are good to 0.002°.
-    normal: [i16; 3],
+    /// Normal of the side that it met.
+    normal: PackedNormal,
     kind: Kind,
     is_front: bool,
     power: Vec3,
@@ -42,10 +60,7 @@ impl Stored {
         };
         Self {
             position: (hit.point.position - center).as_vec3(),
-            normal: (normal * f64::from(i16::MAX))
-                .round()
-                .to_array()
-                .map(|c| c as i16),
+            normal: PackedNormal::new(normal),
             kind,
             is_front: hit.point.is_front,
             power: DVec3::from_array(power.to_array()).as_vec3(),
@@ -58,10 +73,7 @@ impl Stored {
     pub(super) fn at(position: DVec3, normal: DVec3, power: f64) -> Self {
         Self {
             position: position.as_vec3(),
-            normal: (normal * f64::from(i16::MAX))
-                .round()
-                .to_array()
-                .map(|c| c as i16),
+            normal: PackedNormal::new(normal),
             kind: Kind::Large,
             is_front: true,
             power: Vec3::splat(power as f32),
@@ -76,8 +88,12 @@ impl Stored {
 
     /// Normal of the side that it met.
     pub(super) fn normal(&self) -> DVec3 {
-        let [x, y, z] = self.normal.map(f64::from);
-        DVec3::new(x, y, z).normalize_or(DVec3::Z)
+        self.normal.unpack()
+    }
+
+    /// The same, as it is stored.
+    pub(super) fn packed_normal(&self) -> PackedNormal {
+        self.normal
     }
 
     /// W per channel.

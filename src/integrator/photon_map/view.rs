@@ -1,6 +1,6 @@
 //! From the camera to the maps: direct light and stored light at matt surfaces, everything else followed further.
 
-use super::Maps;
+use super::PhotonSolution;
 use super::stored::facing;
 use crate::color::Rgb;
 use crate::integrator::medium::{Bodies, Media, left_after};
@@ -17,6 +17,7 @@ use crate::sampler::{Sampler, Use};
 use crate::scene::{Scene, SurfacePoint};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 /// Pads of glossy parts: their questions to lights must not be those of the matt part.
 const GLOSSY: u32 = 1 << 20;
@@ -30,7 +31,7 @@ pub(super) struct View<'s> {
     pub(super) scene: &'s Scene,
     pub(super) sources: Sources<'s>,
     pub(super) bodies: Bodies<'s>,
-    pub(super) maps: Maps,
+    pub(super) maps: Arc<PhotonSolution>,
     pub(super) max_depth: u32,
 }
 

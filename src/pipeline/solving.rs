@@ -1,0 +1,153 @@
+//! The stage between scene and view: the light that all cameras share, kept, read or solved.
+
+use super::budget;
+use super::content_hash::ContentHash;
+use super::failure::Failure;
+use super::report::{Phase, SolutionFacts, SolutionOrigin};
+use super::solution_file::{self, Basis};
+use super::store::SolutionTarget;
+use super::studio::{Keep, Run, Studio};
+use super::viewing::Viewing;
+use super::world::{Entry, World};
+use crate::integrator::Solution;
+use crate::options::value::Renderer;
+use crate::options::{Options, Stage};
+use crate::scene::Scene;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Where the light that all cameras share is read from and written to.
+#[derive(Clone, Debug, Default)]
+pub struct SolutionFiles {
+    /// Read from here instead of solved.
+    pub read: Option<PathBuf>,
+    /// Written here.
+    pub save: Option<SolutionTarget>,
+}
+
+impl SolutionFiles {
+    /// The files that the user names, if the method of `options` has anything to write into them.
+    ///
+    /// # Errors
+    /// If it has not.
+    pub fn check(&self, options: &Options) -> Result<(), Failure> {
+        let has_solution = match options.renderer.value {
+            Renderer::Path | Renderer::Raytracer => false,
+            Renderer::Photon => true,
+        };
+        if has_solution || (self.read.is_none() && self.save.is_none()) {
+            return Ok(());
+        }
+        Err(Failure::Usage(
+            "`--solution` and `--save-solution` are for methods that solve the light once for all cameras: \
+             `--renderer photon`"
+                .into(),
+        ))
+    }
+}
+
+/// The light that all cameras share.
+pub struct Solved {
+    /// The light.
+    pub solution: Solution,
+    /// Where it came from.
+    pub facts: SolutionFacts,
+}
+
+impl Studio<'_> {
+    /// The light of a scene that [`build`](Self::build) made for the same run: read from the file that the user names, kept from the
+    /// run before, or solved. Written where the user wants it.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is of something else or is damaged; if the light cannot be solved, or not be written.
+    pub fn solve(
+        &mut self,
+        run: &Run,
+        scene: &Arc<Scene>,
+        viewing: &Viewing<'_>,
+    ) -> Result<Solved, Failure> {
+        let world = self.world;
+        let files = self.solution_files.clone();
+        let basis = if files.read.is_some() || files.save.is_some() {
+            let panorama = self.panorama(run)?;
+            let sky = ContentHash::of(panorama.as_ref().map(|(_, file)| &file[..]));
+            Some(Basis::new(run, scene, sky))
+        } else {
+            None
+        };
+        let (solution, origin) = match (&files.read, &basis) {
+            (Some(path), Some(basis)) => {
+                let read = || read(world, path, basis, viewing);
+                let solution = self.seconds.time(world, Phase::Read, read)?;
+                (solution, SolutionOrigin::Read)
+            }
+            _ => self.kept_or_solved(run, scene, viewing)?,
+        };
+        if let (Some(target), Some(basis), Some(content)) =
+            (&files.save, &basis, solution.to_bytes())
+        {
+            self.seconds.time(world, Phase::Write, || {
+                target.write(world, &solution_file::encode(basis, &content)?)
+            })?;
+        }
+        let facts = match solution {
+            Solution::Nothing => SolutionFacts::default(),
+            Solution::Photons(_) => SolutionFacts {
+                origin: Some(origin),
+                photons: solution.photons(),
+            },
+        };
+        Ok(Solved { solution, facts })
+    }
+
+    fn kept_or_solved(
+        &mut self,
+        run: &Run,
+        scene: &Arc<Scene>,
+        viewing: &Viewing<'_>,
+    ) -> Result<(Solution, SolutionOrigin), Failure> {
+        let known = self.scene.as_ref();
+        let known = known.filter(|(_, known)| Arc::ptr_eq(known, scene));
+        let key = known.map(|(key, _)| key.with(&run.options.fingerprint(Stage::Solution)));
+        if let (Some((known, solution)), Some(key)) = (&self.solution, key)
+            && *known == key
+        {
+            return Ok((solution.clone(), SolutionOrigin::Kept));
+        }
+        // Its memory first, then that of the new one.
+        self.solution = None;
+        let world = self.world;
+        let solution = self
+            .seconds
+            .time(world, Phase::Prepare, || viewing.solve(scene))?;
+        if self.keep == Keep::All {
+            self.solution = key.map(|key| (key, solution.clone()));
+        }
+        Ok((solution, SolutionOrigin::Made))
+    }
+}
+
+/// The solution in a file.
+fn read(
+    world: &dyn World,
+    path: &Path,
+    basis: &Basis,
+    viewing: &Viewing<'_>,
+) -> Result<Solution, Failure> {
+    let refused = |why: &dyn std::fmt::Display| {
+        let path = path.display();
+        Failure::World(format!("cannot use `{path}` as a solution: {why}"))
+    };
+    if matches!(world.entry(path), Entry::Folder | Entry::Device) {
+        return Err(refused(&"it is not an ordinary file"));
+    }
+    // The file and what is in it are in memory together.
+    let most = budget::memory(world, viewing.options) / 2;
+    let file = world
+        .read_up_to(path, most)
+        .map_err(|error| Failure::file("read", path, &error))?;
+    let content = solution_file::decode(&file, basis).map_err(|error| refused(&error))?;
+    viewing
+        .restore(content)
+        .map_err(|error| refused(&solution_file::Refused::Damaged(error.0)))
+}
