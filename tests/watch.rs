@@ -1,20 +1,29 @@
-//! `watch` as a user meets it: an editor saves, the picture follows, mistakes are survived.
+//! `watch` as a user meets it: an editor saves, the picture follows, mistakes are survived; the page asks, and is answered.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![cfg(unix)]
 
+#[path = "support/visitor.rs"]
+mod visitor;
+
+use serde_json::Value;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
 use tempfile::TempDir;
+use visitor::{PATIENCE, Visitor};
 
 /// A model of one sphere.
 fn ball(radius: &str) -> String {
     format!("protected void init() [ Axiom ==> Sphere({radius}); ]\n")
 }
+
+/// A model that grows, with numbers to change.
+const PLANT: &str = "const float LENGTH = 0.5; // of a piece\nconst int PIECES = 2;\nmodule Bud;\n\
+    protected void init() [ Axiom ==> Bud; ]\n\
+    public void run() [ Bud ==> for (int i : 1 : PIECES) ( Cylinder(LENGTH, 0.2).(setShader(GREEN)) M(LENGTH) ) Bud; ]\n";
 
 /// A running `watch`.
 struct Watch {
@@ -25,21 +34,25 @@ struct Watch {
 
 impl Watch {
     fn start() -> Self {
+        Self::of(
+            &ball("1"),
+            &["-o", "m.png", "--steps", "0", "--size", "24x16"],
+        )
+    }
+
+    fn of(model: &str, arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("m.rgg"), ball("1")).unwrap();
+        fs::write(folder.path().join("m.rgg"), model).unwrap();
+        Self::inside(folder, &[&["--port", "0"], arguments].concat())
+    }
+
+    fn inside(folder: TempDir, arguments: &[&str]) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_understory"))
             .current_dir(folder.path())
-            .args([
-                "watch",
-                "m.rgg",
-                "-o",
-                "m.png",
-                "--size",
-                "24x16",
-                "--samples",
-                "2",
-            ])
-            .args(["--steps", "0"])
+            .env_remove("VISUAL")
+            .env_remove("EDITOR")
+            .args(["watch", "m.rgg", "--samples", "2"])
+            .args(arguments)
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
@@ -67,12 +80,20 @@ impl Watch {
     fn wait(&self, word: &str) -> String {
         let mut seen = Vec::new();
         loop {
-            match self.lines.recv_timeout(Duration::from_secs(60)) {
+            match self.lines.recv_timeout(PATIENCE) {
                 Ok(line) if line.contains(word) => return line,
                 Ok(line) => seen.push(line),
                 Err(_) => panic!("no line with `{word}` after:\n{}", seen.join("\n")),
             }
         }
+    }
+
+    /// Somebody who looks at the page.
+    fn visitor(&self) -> Visitor {
+        let line = self.wait("http://localhost:");
+        let port = line.split("localhost:").nth(1).unwrap();
+        let port = port.split('/').next().unwrap().parse().unwrap();
+        Visitor { port }
     }
 
     fn picture(&self) -> Vec<u8> {
@@ -91,6 +112,19 @@ impl Watch {
         );
         self.child.wait().unwrap().code()
     }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        // A test that failed leaves nothing running. One that ended well has waited for the end.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// How often a stage has run.
+fn work(state: &Value, stage: &str) -> u64 {
+    state["work"][stage].as_u64().unwrap()
 }
 
 #[test]
@@ -139,4 +173,217 @@ fn the_picture_follows_every_way_of_saving_and_survives_mistakes() {
     watch.wait("m.png: 24x16");
     assert!(watch.picture() != first);
     assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn the_page_sees_pictures_errors_and_recovery() {
+    let watch = Watch::of(&ball("1"), &["--steps", "0", "--size", "60x40"]);
+    let visitor = watch.visitor();
+    let mut events = visitor.events();
+    let state = events.whole("a first picture", |_| true);
+    assert_eq!(state["name"], "m.rgg");
+    let number = state["frame"]["number"].as_u64().unwrap();
+    let frame = visitor.get(&format!("/frame/{number}"));
+    assert_eq!(frame.status, 200);
+    assert!(frame.head.contains("image/png") && frame.body.starts_with(b"\x89PNG"));
+    assert_eq!(visitor.get("/frame/999").status, 404);
+
+    // The picture to be saved is the one that the command makes.
+    let command = state["command"].as_str().unwrap();
+    let words: Vec<&str> = command.split(' ').skip(1).collect();
+    let made = Command::new(env!("CARGO_BIN_EXE_understory"))
+        .current_dir(watch.folder.path())
+        .args(&words)
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{command}: {made:?}");
+    assert!(
+        visitor.get("/picture.png").body == watch.picture(),
+        "{command}"
+    );
+
+    fs::write(
+        watch.path("m.rgg"),
+        "\n\nprotected void init() [ Axiom ==> Spher(1); ]",
+    )
+    .unwrap();
+    let state = events.until("an error", |state| state["activity"] == "failed");
+    let problem = &state["problems"][0];
+    let place = &problem["place"];
+    assert_eq!(
+        (&place["line"], &place["name"]),
+        (&3.into(), &"m.rgg".into())
+    );
+    assert!(place["text"].as_str().unwrap().contains("Spher(1)"));
+    assert!(state["frame"].is_object(), "the last good picture stays");
+    // … and can be looked at from elsewhere.
+    let before = state["frame"]["number"].as_u64();
+    let wish = r#"{"options":{"eye":"9,1,2","target":"0,0,0"}}"#;
+    assert_eq!(visitor.post("/wish", wish).status, 204);
+    let state = events.until("another view", |state| {
+        let frame = &state["frame"];
+        frame["is_final"] == true && frame["number"].as_u64() > before
+    });
+    assert_eq!(state["problems"].as_array().unwrap().len(), 1);
+
+    fs::write(watch.path("m.rgg"), ball("2")).unwrap();
+    let state = events.whole("recovery", |state| state["round"] == 3);
+    assert_eq!(state["problems"], serde_json::json!([]));
+    assert_eq!(state["changed"], serde_json::json!(["m.rgg"]));
+    assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn each_change_repeats_only_what_it_touches() {
+    let watch = Watch::of(PLANT, &["--steps", "2", "--size", "30x20"]);
+    let visitor = watch.visitor();
+    let mut events = visitor.events();
+    let first = events.whole("a first picture", |_| true);
+    assert_eq!((work(&first, "growths"), work(&first, "views")), (1, 1));
+
+    // The same text again: nothing at all.
+    fs::write(watch.path("m.rgg"), PLANT).unwrap();
+    // The camera: only the view.
+    let ask = |wish: &str| assert_eq!(visitor.post("/wish", wish).status, 204, "{wish}");
+    ask(r#"{"options":{"eye":"9,1,2","target":"0,0,1"}}"#);
+    let state = events.whole("another view", |state| work(state, "views") == 2);
+    for stage in ["checks", "growths", "drawings", "accels", "solutions"] {
+        assert_eq!(work(&state, stage), 1, "{stage} after a move of the camera");
+    }
+    assert_eq!(state["round"], 1, "the same text is no change");
+
+    // The sun: no growth, no shapes.
+    ask(r#"{"options":{"sun":"90,30"}}"#);
+    let state = events.whole("another sun", |state| work(state, "scenes") == 2);
+    for stage in ["checks", "growths", "drawings"] {
+        assert_eq!(work(&state, stage), 1, "{stage} after a move of the sun");
+    }
+
+    // The renderer: the same scene.
+    ask(r#"{"options":{"sun":"90,30","renderer":"raytracer"}}"#);
+    let state = events.whole("another renderer", |state| work(state, "solutions") == 3);
+    assert_eq!((work(&state, "growths"), work(&state, "scenes")), (1, 2));
+    assert_eq!(state["options"]["renderer"]["text"], "raytracer");
+
+    // Steps and constants: growth, and not a byte of the file.
+    ask(r#"{"options":{"steps":"3"}}"#);
+    let state = events.whole("another step", |state| work(state, "growths") == 2);
+    assert_eq!(state["options"]["steps"]["text"], "3");
+    ask(r#"{"constants":{"m.LENGTH":"0.75"}}"#);
+    let state = events.whole("another length", |state| work(state, "growths") == 3);
+    assert!(
+        state["command"]
+            .as_str()
+            .unwrap()
+            .ends_with("--set m.LENGTH=0.75")
+    );
+    assert_eq!(state["constants"][0]["text"], "0.5");
+    assert_eq!(fs::read_to_string(watch.path("m.rgg")).unwrap(), PLANT);
+
+    // … until it is to be written.
+    assert_eq!(
+        visitor
+            .post("/write", r#"{"constants":{"m.LENGTH":"0.75"}}"#)
+            .text(),
+        "m.rgg"
+    );
+    events.whole("the file", |state| state["constants"][0]["text"] == "0.75");
+    assert_eq!(
+        fs::read_to_string(watch.path("m.rgg")).unwrap(),
+        PLANT.replace("0.5;", "0.75;")
+    );
+    assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn strangers_are_turned_away_and_no_path_is_told() {
+    let watch = Watch::of(&ball("1"), &["--steps", "0", "--size", "24x16"]);
+    let visitor = watch.visitor();
+    let port = visitor.port;
+    let page = visitor.get("/");
+    assert!(page.status == 200 && page.text().contains("<!doctype html>"));
+    assert!(page.head.to_lowercase().contains("content-security-policy"));
+    let with = |lines: &str| {
+        let request = format!("GET / HTTP/1.1\r\nConnection: close\r\n{lines}\r\n");
+        visitor.say(&request).status
+    };
+    assert_eq!(with(&format!("Host: 127.0.0.1:{port}\r\n")), 200);
+    assert_eq!(with(&format!("Host: evil.example:{port}\r\n")), 403);
+    assert_eq!(
+        with(&format!(
+            "Host: localhost:{port}\r\nOrigin: http://evil.example\r\n"
+        )),
+        403
+    );
+    assert_eq!(
+        with(&format!(
+            "Host: localhost:{port}\r\nSec-Fetch-Site: cross-site\r\n"
+        )),
+        403
+    );
+    let unsigned = format!(
+        "POST /wish HTTP/1.1\r\nHost: localhost:{port}\r\nConnection: close\r\n\
+         Content-Type: application/json\r\nContent-Length: 2\r\n\r\n{{}}"
+    );
+    assert_eq!(visitor.say(&unsigned).status, 403);
+    for (path, json) in [
+        ("/wish", r#"{"options":{"sky":"/etc/passwd.exr"}}"#),
+        ("/wish", r#"{"options":{"steps":"many"}}"#),
+        ("/open", r#"{"file":0,"line":1,"column":1}"#),
+        ("/open", r#"{"file":77,"line":1,"column":1}"#),
+        ("/write", r#"{}"#),
+    ] {
+        assert_eq!(visitor.post(path, json).status, 422, "{path} {json}");
+    }
+    assert!(visitor.post("/wish", r#"{"x":1}"#).status >= 400);
+    assert_eq!(visitor.get("/../../etc/passwd").status, 404);
+
+    // Whatever goes wrong, no folder of the machine is named.
+    let mut events = visitor.events();
+    fs::remove_file(watch.path("m.rgg")).unwrap();
+    let state = events.until("a missing model", |state| state["activity"] == "failed");
+    assert!(!state["problems"].as_array().unwrap().is_empty());
+    let folder = watch.folder.path().to_str().unwrap();
+    assert!(!state.to_string().contains(folder), "{state}");
+    fs::write(watch.path("m.rgg"), ball("2")).unwrap();
+    events.whole("the model that came back", |state| {
+        state["round"].as_u64() > Some(1)
+    });
+    assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn a_second_watch_takes_another_port_and_says_so() {
+    let one = Watch::of(&ball("1"), &["--steps", "0", "--size", "24x16"]);
+    let port = one.visitor().port;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("m.rgg"), ball("2")).unwrap();
+    let other = Watch::inside(folder, &["--port", &port.to_string(), "--steps", "0"]);
+    let line = other.wait("http://localhost:");
+    assert!(line.contains(&format!("port {port} is taken")), "{line}");
+    assert!(!line.contains(&format!("localhost:{port}/")), "{line}");
+    // Who leaves ends the events of who looks.
+    let mut events = Visitor { port }.events();
+    assert!(events.next().is_some());
+    assert_eq!(one.stop(), Some(0));
+    while events.next().is_some() {}
+    assert_eq!(other.stop(), Some(0));
+}
+
+#[test]
+fn once_makes_one_picture_and_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |model: &str| {
+        fs::write(folder.path().join("m.rgg"), model).unwrap();
+        Command::new(env!("CARGO_BIN_EXE_understory"))
+            .current_dir(folder.path())
+            .args(["watch", "m.rgg", "--once", "-o", "m.png", "--size", "24x16"])
+            .args(["--samples", "2", "--steps", "0"])
+            .output()
+            .unwrap()
+    };
+    let good = run(&ball("1"));
+    assert_eq!(good.status.code(), Some(0), "{good:?}");
+    assert!(folder.path().join("m.png").exists());
+    assert_eq!(run("void init() [ Axiom ==> ").status.code(), Some(1));
 }

@@ -3,6 +3,7 @@
 //! Commands and paths are written out here; every option of a model comes from its row of the table of options.
 
 use crate::options::{Command, OptionRow, Options, Origin, Section, TABLE};
+use crate::pipeline::constants::Change;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::project_files::Access;
 use clap::builder::styling::{AnsiColor, Styles};
@@ -53,12 +54,22 @@ pub struct ModelArg {
     /// A folder that the model may use besides its own (repeatable)
     #[arg(long, value_name = "DIR")]
     pub allow_path: Vec<PathBuf>,
+    /// Give a `const` or `static` number of the model another value (repeatable)
+    #[arg(long, value_name = "NAME=NUMBER")]
+    pub set: Vec<String>,
     /// Write the tables that the model draws (`chart`) into this folder, as CSV and SVG
     #[arg(long, value_name = "DIR")]
     pub charts: Option<PathBuf>,
 }
 
 impl ModelArg {
+    /// The constants that are to have other values.
+    pub fn changes(&self) -> Result<Vec<Change>, Failure> {
+        let changes = self.set.iter().map(|text| Change::parse(text));
+        let changes: Result<Vec<Change>, String> = changes.collect();
+        changes.map_err(|message| Failure::Usage(format!("--set: {message}")))
+    }
+
     /// What the model may use besides its own folder.
     pub fn access(&self) -> Result<Access, Failure> {
         Access::parse(&self.path_map, &self.allow_path, self.charts.as_deref())
@@ -163,22 +174,27 @@ pub struct RenderArgs {
 
 /// `watch`
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example:\n  understory watch plant.rgg -o plant.png --quality draft\n\n\
-                        Errors are shown and survived; the last good picture stays. Ctrl-C ends it."
-)]
+#[command(after_help = "Examples:\n  understory watch plant.rgg\n  \
+                        understory watch plant.rgg --editor code\n  \
+                        understory watch plant.rgg -o plant.png --quality draft\n\n\
+                        Open the address that it prints in a browser: the picture follows every save, and can be turned, grown and lit there.\n\
+                        Errors are shown and survived; the last good picture stays. Ctrl-C ends it.")]
 pub struct WatchArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
-    /// The picture: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
-    #[arg(
-        short,
-        long,
-        value_name = "FILE",
-        required_unless_present = "explain_options"
-    )]
+    /// Keep this picture up to date too: .png .jpg .webp (sRGB), .exr .hdr (linear radiance)
+    #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Port of the page; the next free one if it is taken
+    #[arg(long, value_name = "PORT", default_value_t = crate::watch::page::PORT)]
+    pub port: u16,
+    /// The command that opens a line of the model: `code`, or any with `{file}` and `{line}`; $VISUAL or $EDITOR otherwise
+    #[arg(long, value_name = "COMMAND")]
+    pub editor: Option<String>,
+    /// Make the picture once, without a page, and stop
+    #[arg(long)]
+    pub once: bool,
     /// Write what was done, and how long it took, to this file, after each picture
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,

@@ -104,7 +104,7 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
         studio.solution_files.check(&run.options)?;
         check_wishes(&shell.world, run)?;
         let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
-        shell.report(report.as_ref(), run, &studio.seconds, &made)?;
+        shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
         shell
             .terminal
             .note(&summary(target.path(), run, studio, &made));
@@ -132,7 +132,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
         check_wishes(&shell.world, run)?;
         open_folder(&shell.world, output)?;
         let made = shell.making(Partial::Drop).film(studio, run, output)?;
-        shell.report(report.as_ref(), run, &studio.seconds, &made)?;
+        shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
         let kept = match made.n_kept {
             0 => String::new(),
             n => format!(", {n} kept"),
@@ -218,6 +218,7 @@ fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure>
     let path = model.model.clone();
     let mut studio = Studio::new(&shell.world, shell.terminal.clone(), path, Keep::Last);
     studio.access = model.access()?;
+    studio.changes = model.changes()?;
     Ok(studio)
 }
 

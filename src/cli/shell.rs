@@ -8,15 +8,13 @@ use crate::options::{Command, Options, explain};
 use crate::pipeline::failure::Failure;
 use crate::pipeline::inputs::Inputs;
 use crate::pipeline::making::{Made, Making, Partial};
-use crate::pipeline::report::{PhaseSeconds, REPORT_KEYS, Report};
+use crate::pipeline::report::{PhaseSeconds, REPORT_KEYS, Report, Work};
 use crate::pipeline::store::JsonTarget;
 use crate::pipeline::studio::Run;
+use crate::pipeline::threads;
 use crate::pipeline::world::Machine;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Stack of each thread: deep recursion in a model ends by the language's own limit, long before this.
-pub(super) const STACK: usize = 64 << 20;
 
 /// What all commands share.
 pub(super) struct Shell {
@@ -65,23 +63,7 @@ impl Shell {
         options: &Options,
         work: impl FnOnce() -> Result<T, Failure> + Send,
     ) -> Result<T, Failure> {
-        let n_threads = options.threads.value.map_or(0, |threads| threads.0.get());
-        // A model runs on a thread of its own with a deep stack, outside the pool below; what it does in parallel uses the
-        // global one. Only the first call in a process can set that, which does no harm.
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(n_threads)
-            .build_global()
-            .ok();
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(n_threads)
-            .stack_size(STACK)
-            .build();
-        match pool {
-            Ok(pool) => pool.install(work),
-            Err(error) => Err(Failure::World(format!(
-                "cannot start {n_threads} threads: {error}"
-            ))),
-        }
+        threads::pool(options)?.install(work)
     }
 
     /// Prints the options of a model as they are for `command`.
@@ -129,7 +111,7 @@ impl Shell {
         &self,
         target: Option<&JsonTarget>,
         run: &Run,
-        seconds: &PhaseSeconds,
+        (seconds, work): (&PhaseSeconds, Work),
         made: &Made,
     ) -> Result<(), Failure> {
         let Some(target) = target else { return Ok(()) };
@@ -143,7 +125,8 @@ impl Shell {
             made.hash,
         )
         .solved(made.solution)
-        .warning(&made.warnings);
+        .warning(&made.warnings)
+        .working(work);
         target.write(&self.world, &report)
     }
 

@@ -1,8 +1,8 @@
 //! `lsp`: the language server on standard input and output.
 
 use super::outcome::Exit;
-use super::shell::STACK;
 use crate::lsp::server::{Ended, serve};
+use crate::pipeline::threads::STACK;
 use crate::pipeline::world::Machine;
 use std::io::{self, BufReader, ErrorKind};
 

@@ -71,6 +71,13 @@ impl SourceMap {
         FileId(u16::try_from(self.files.len() - 1).unwrap_or(u16::MAX))
     }
 
+    /// Gives the file with this number another text.
+    pub fn replace(&mut self, id: FileId, text: impl Into<Arc<str>>) {
+        if let Some(file) = self.files.get_mut(usize::from(id.0)) {
+            file.text = text.into();
+        }
+    }
+
     /// The file with this number, if there is one.
     pub fn file(&self, id: FileId) -> Option<&SourceFile> {
         self.files.get(usize::from(id.0))

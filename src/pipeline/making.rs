@@ -120,6 +120,7 @@ impl Making<'_> {
             Ok::<_, Failure>((prepared, exposure))
         })?;
         self.audience.begins("rendering");
+        studio.work.views += 1;
         let shot = studio.seconds.time(self.world, Phase::Render, || {
             viewing.shoot(&prepared, &camera)
         })?;

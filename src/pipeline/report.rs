@@ -66,6 +66,17 @@ impl PhaseSeconds {
         *total += time.as_secs_f64();
     }
 
+    /// Adds the time of all phases.
+    pub fn merge(&mut self, other: &Self) {
+        self.read += other.read;
+        self.derive += other.derive;
+        self.scene += other.scene;
+        self.accel += other.accel;
+        self.prepare += other.prepare;
+        self.render += other.render;
+        self.write += other.write;
+    }
+
     /// Does some work and adds its time to a phase.
     pub fn time<T>(&mut self, world: &dyn World, phase: Phase, work: impl FnOnce() -> T) -> T {
         let start = world.now();
@@ -95,6 +106,27 @@ impl PhaseSeconds {
             parts.join(", ")
         }
     }
+}
+
+/// How often each stage has run since the program began: `watch` repeats only what a change touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Work {
+    /// Texts read and checked.
+    pub checks: u64,
+    /// Models grown from their beginning.
+    pub growths: u64,
+    /// Steps of growth.
+    pub steps: u64,
+    /// Graphs turned into shapes.
+    pub drawings: u64,
+    /// Acceleration structures built.
+    pub accels: u64,
+    /// Scenes set up: with other light or colours, say, round shapes that are there.
+    pub scenes: u64,
+    /// View-independent solutions of a renderer.
+    pub solutions: u64,
+    /// Pictures begun.
+    pub views: u64,
 }
 
 /// What tracing light amounted to.
@@ -173,6 +205,8 @@ pub struct Report<'a> {
     relative_error: Option<f64>,
     peak_memory_bytes: Option<u64>,
     image_hash: String,
+    /// How often each stage has run.
+    work: Work,
     /// What the pictures lack without showing it.
     warnings: &'a [&'static str],
 }
@@ -292,6 +326,7 @@ impl<'a> Report<'a> {
             relative_error: effort.relative_error,
             peak_memory_bytes: world.peak_memory(),
             image_hash: image.to_string(),
+            work: Work::default(),
             warnings: &[],
         }
     }
@@ -312,6 +347,12 @@ impl<'a> Report<'a> {
     #[must_use]
     pub fn warning(self, warnings: &'a [&'static str]) -> Self {
         Self { warnings, ..self }
+    }
+
+    /// The same report, which also tells how often each stage has run.
+    #[must_use]
+    pub fn working(self, work: Work) -> Self {
+        Self { work, ..self }
     }
 }
 

@@ -116,6 +116,7 @@ impl Studio<'_> {
         }
         // Its memory first, then that of the new one.
         self.solution = None;
+        self.work.solutions += 1;
         let world = self.world;
         let solution = self
             .seconds

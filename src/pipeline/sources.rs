@@ -1,6 +1,7 @@
 //! The texts of a run: the model's files and the file beside them.
 
 use super::assets;
+use super::constants::{self, Change};
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::inputs::{Inputs, MissingImport};
@@ -32,6 +33,14 @@ impl Inputs {
     /// # Errors
     /// If one cannot be read, or is no text.
     pub fn read(&self, world: &dyn World) -> Result<Sources, Failure> {
+        self.read_changed(world, &[])
+    }
+
+    /// Reads them all, with other values for some constants of the model.
+    ///
+    /// # Errors
+    /// If one cannot be read, or is no text, or there are no such constants.
+    pub fn read_changed(&self, world: &dyn World, changes: &[Change]) -> Result<Sources, Failure> {
         let mut map = SourceMap::default();
         let mut read = |path: &PathBuf| -> Result<FileId, Failure> {
             let content = world
@@ -50,6 +59,8 @@ impl Inputs {
             .map(&mut read)
             .collect::<Result<Vec<_>, _>>()?;
         let sidecar = self.sidecar.as_ref().map(&mut read).transpose()?;
+        constants::change(&mut map, &models, changes)
+            .map_err(|fault| Failure::model(&map, fault))?;
         let names = self.models.iter().filter_map(|path| path.file_name());
         let texts = models.iter().filter_map(|&id| map.file(id));
         let parts: Vec<(String, &str)> = names

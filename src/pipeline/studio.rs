@@ -3,12 +3,13 @@
 use super::audience::Audience;
 use super::budget;
 use super::charts;
+use super::constants::Change;
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::growing::{self, Drawn};
 use super::inputs::Inputs;
 use super::project_files::{self, Access, ProjectFiles};
-use super::report::{Phase, PhaseSeconds};
+use super::report::{Phase, PhaseSeconds, Work};
 use super::solving::SolutionFiles;
 use super::sources::Sources;
 use super::surroundings::Outdoors;
@@ -37,14 +38,14 @@ pub struct Opened {
 }
 
 /// A model that has been read and checked, with the options that apply to it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Run {
     /// Its texts.
     pub sources: Sources,
     /// Its options.
     pub options: Options,
     /// The checked model.
-    pub model: Model,
+    pub model: Arc<Model>,
     /// What it probably does not mean: warnings.
     pub warnings: Diagnostics,
 }
@@ -66,6 +67,8 @@ pub struct Studio<'w> {
     pub(super) keep: Keep,
     /// What the model may use besides its own folder, and where its charts go.
     pub access: Access,
+    /// Constants of the model that are to have other values.
+    pub changes: Vec<Change>,
     drawn: Option<(ContentHash, Drawn)>,
     pub(super) scene: Option<(ContentHash, Arc<Scene>)>,
     /// The light of that scene, with the key of both.
@@ -74,6 +77,8 @@ pub struct Studio<'w> {
     pub solution_files: SolutionFiles,
     /// Time spent since this was last reset.
     pub seconds: PhaseSeconds,
+    /// What was done since this was made.
+    pub work: Work,
 }
 
 impl Run {
@@ -140,11 +145,13 @@ impl<'w> Studio<'w> {
             path,
             keep,
             access: Access::default(),
+            changes: Vec::new(),
             drawn: None,
             scene: None,
             solution: None,
             solution_files: SolutionFiles::default(),
             seconds,
+            work: Work::default(),
         }
     }
 
@@ -153,9 +160,9 @@ impl<'w> Studio<'w> {
     /// # Errors
     /// If one cannot be read.
     pub fn read(&mut self, flags: &Options) -> Result<Opened, Failure> {
-        let (world, path) = (self.world, &self.path);
+        let (world, path, changes) = (self.world, &self.path, &self.changes);
         self.seconds.time(world, Phase::Read, || {
-            let sources = Inputs::find(world, path)?.read(world)?;
+            let sources = Inputs::find(world, path)?.read_changed(world, changes)?;
             let (options, found) = sources.options(flags);
             Ok(Opened {
                 sources,
@@ -175,6 +182,7 @@ impl<'w> Studio<'w> {
             options,
             mut found,
         } = opened;
+        self.work.checks += 1;
         let (model, more) = self
             .seconds
             .time(self.world, Phase::Read, || growing::check(&sources));
@@ -191,7 +199,7 @@ impl<'w> Studio<'w> {
         Ok(Run {
             sources,
             options,
-            model,
+            model: Arc::new(model),
             warnings: found,
         })
     }
@@ -210,6 +218,8 @@ impl<'w> Studio<'w> {
         });
         self.audience.ends();
         let grown = grown?;
+        self.work.growths += 1;
+        self.work.steps += grown.steps();
         self.write_outputs(&grown)?;
         Ok(grown)
     }
@@ -264,6 +274,8 @@ impl<'w> Studio<'w> {
         if cancel.is_cancelled() {
             return Err(Failure::Stopped);
         }
+        self.work.accels += 1;
+        self.work.scenes += 1;
         let scene = Arc::new(scene);
         self.scene = Some((key, scene.clone()));
         Ok(scene)
@@ -336,6 +348,7 @@ impl<'w> Studio<'w> {
         });
         self.audience.ends();
         let (drawn, found) = drawn?;
+        self.work.drawings += 1;
         if !found.is_empty() {
             self.audience.warned(&run.sources.map, &found);
         }

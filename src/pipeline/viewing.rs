@@ -159,21 +159,41 @@ impl Viewing<'_> {
     /// # Errors
     /// If it was stopped before each pixel had a sample.
     pub fn shoot(&self, prepared: &Prepared<'_>, camera: &Camera) -> Result<Shot, Failure> {
+        self.refine(prepared, camera, &mut |_| {})
+    }
+
+    /// Takes a picture, and shows it after each pass on the way.
+    ///
+    /// # Errors
+    /// As [`shoot`](Self::shoot).
+    pub fn refine(
+        &self,
+        prepared: &Prepared<'_>,
+        camera: &Camera,
+        show: &mut dyn FnMut(&FilmResult),
+    ) -> Result<Shot, Failure> {
         let seen = match self.options.time.value {
             None => {
                 let report =
                     |progress: Progress| self.audience.progress(progress.done, progress.total);
                 let context = self.context(self.cancel, &report);
                 let settings = self.settings();
+                let mut on_pass = |result: &FilmResult| {
+                    show(result);
+                    ControlFlow::Continue(())
+                };
                 render_view(
                     &*prepared.estimator,
                     camera,
                     &settings,
                     &context,
-                    &mut go_on,
+                    &mut on_pass,
                 )
             }
-            Some(seconds) => self.shoot_until(prepared, camera, Duration::from_secs_f64(seconds.0)),
+            Some(seconds) => {
+                let time = Duration::from_secs_f64(seconds.0);
+                self.shoot_until(prepared, camera, time, show)
+            }
         };
         match seen {
             Ok(result) => Ok(shot(&result, true)),
@@ -187,12 +207,40 @@ impl Viewing<'_> {
         }
     }
 
+    /// Takes a picture of another size, with this many samples everywhere: a first impression.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn glimpse(
+        &self,
+        prepared: &Prepared<'_>,
+        camera: &Camera,
+        (width, height): (u32, u32),
+        samples_per_pixel: u32,
+    ) -> Result<LinearImage, Failure> {
+        let settings = FilmSettings {
+            width,
+            height,
+            samples_per_pixel,
+            refinement: Refinement::Everywhere,
+            ..self.settings()
+        };
+        let silent = |_: Progress| {};
+        let context = self.context(self.cancel, &silent);
+        let estimator = &*prepared.estimator;
+        match render_view(estimator, camera, &settings, &context, &mut go_on) {
+            Ok(result) => Ok(result.film.image()),
+            Err(error) => Err(failure(&error)),
+        }
+    }
+
     /// Adds samples until the time is over, but at least one to each pixel.
     fn shoot_until(
         &self,
         prepared: &Prepared<'_>,
         camera: &Camera,
         time: Duration,
+        show: &mut dyn FnMut(&FilmResult),
     ) -> Result<FilmResult, RenderError> {
         let start = self.world.now();
         let elapsed = || self.world.now().saturating_sub(start);
@@ -219,8 +267,9 @@ impl Viewing<'_> {
                 }
             });
             let context = self.context(&stop, &report);
-            let mut on_pass = |_: &FilmResult| {
+            let mut on_pass = |result: &FilmResult| {
                 has_picture.store(true, Ordering::Relaxed);
+                show(result);
                 if elapsed() >= time {
                     ControlFlow::Break(())
                 } else {

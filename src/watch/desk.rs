@@ -3,8 +3,9 @@
 use super::snapshot::Snapshot;
 use std::time::Duration;
 
-/// Looks wait this long after a touch, so that a save of many writes is one change.
-const QUIET: Duration = Duration::from_millis(100);
+/// Looks wait this long after a touch, so that a save of many writes is one change. Short, because a run that was started
+/// too early is stopped at once by the next look.
+const QUIET: Duration = Duration::from_millis(30);
 /// … but never longer than this after the first touch.
 const LONGEST: Duration = Duration::from_millis(500);
 /// How long a missing file may be on its way before its absence is news.
@@ -117,8 +118,8 @@ mod tests {
         for at in [10, 50, 90] {
             desk.touched(ms(at));
         }
-        assert_eq!(desk.patience(ms(90)), ms(100));
-        assert_eq!(desk.look(of("p.rgg", Some("b")), ms(190)), start());
+        assert_eq!(desk.patience(ms(90)), QUIET);
+        assert_eq!(desk.look(of("p.rgg", Some("b")), ms(90) + QUIET), start());
     }
 
     #[test]

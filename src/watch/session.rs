@@ -37,11 +37,11 @@ struct Job {
 
 /// Runs `model` now and after each change, until [`Event::Quit`] or the end of events.
 ///
-/// `sender` is the other end of `events`.
+/// `sender` is the other end of `events`. `interrupt` is called whenever a run is told to end: it may sleep.
 pub fn watch(
     world: &dyn World,
     model: &Path,
-    runner: &mut dyn Runner,
+    (runner, interrupt): (&mut dyn Runner, &dyn Fn()),
     sender: Sender<Event>,
     events: Receiver<Event>,
 ) {
@@ -57,12 +57,18 @@ pub fn watch(
                 let _ = sender.send(Event::RunFinished);
             }
         });
-        attend(world, model, &jobs, &events);
+        attend(world, model, &jobs, &events, interrupt);
     });
 }
 
 /// Owns the state; the only one to decide what is run.
-fn attend(world: &dyn World, model: &Path, jobs: &Sender<Job>, events: &Receiver<Event>) {
+fn attend(
+    world: &dyn World,
+    model: &Path,
+    jobs: &Sender<Job>,
+    events: &Receiver<Event>,
+    interrupt: &dyn Fn(),
+) {
     let mut cancel = CancelToken::default();
     let start = |changed: Vec<String>, cancel: &CancelToken| {
         jobs.send(Job {
@@ -79,6 +85,7 @@ fn attend(world: &dyn World, model: &Path, jobs: &Sender<Job>, events: &Receiver
             Ok(Event::RunFinished) => desk.finished(world.now()),
             Ok(Event::Quit) | Err(RecvTimeoutError::Disconnected) => {
                 cancel.cancel();
+                interrupt();
                 return;
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -88,7 +95,10 @@ fn attend(world: &dyn World, model: &Path, jobs: &Sender<Job>, events: &Receiver
         }
         match desk.look(Snapshot::take(world, model), world.now()) {
             Order::Nothing => {}
-            Order::Cancel => cancel.cancel(),
+            Order::Cancel => {
+                cancel.cancel();
+                interrupt();
+            }
             Order::Start(changed) => {
                 cancel = CancelToken::default();
                 start(changed, &cancel);
@@ -142,7 +152,15 @@ mod tests {
         std::thread::scope(|scope| {
             let (world, events_in) = (&world, sender.clone());
             let puppet = &mut puppet;
-            scope.spawn(move || watch(world, Path::new("m/p.rgg"), puppet, events_in, events));
+            scope.spawn(move || {
+                watch(
+                    world,
+                    Path::new("m/p.rgg"),
+                    (puppet, &|| {}),
+                    events_in,
+                    events,
+                )
+            });
             let next = || seen.recv().unwrap();
             let change = |text: &str| {
                 world.put("m/p.rgg", text);

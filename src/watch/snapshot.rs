@@ -7,7 +7,8 @@ use crate::pipeline::world::World;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The content of each input, by path; `None` for one that cannot be read.
+/// The content of each input, by path; `None` for one that cannot be read, or a text of the model without a byte: editors
+/// that write in place empty a file first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Snapshot {
     contents: BTreeMap<PathBuf, Option<ContentHash>>,
@@ -21,6 +22,7 @@ impl Snapshot {
             let hash = world
                 .read(&path)
                 .ok()
+                .filter(|content| !content.is_empty())
                 .map(|content| ContentHash::of([&content[..]]));
             (path, hash)
         };
@@ -86,6 +88,16 @@ pub(super) mod tests {
         assert!(take().changes_since(&old).is_empty());
         world.put("m/rock.obj", "v 0 0 1");
         assert_eq!(take().changes_since(&old), ["rock.obj"]);
+    }
+
+    #[test]
+    fn a_file_that_was_just_emptied_is_torn() {
+        let world = crate::pipeline::world::fake::FakeWorld::default();
+        let take = || Snapshot::take(&world, Path::new("m/p.rgg"));
+        world.put("m/p.rgg", "");
+        assert!(take().is_torn());
+        world.put("m/p.rgg", "x");
+        assert!(!take().is_torn());
     }
 
     #[test]
