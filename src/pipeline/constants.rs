@@ -162,7 +162,7 @@ pub(super) fn change(
     map: &mut SourceMap,
     files: &[FileId],
     changes: &[Change],
-) -> Result<(), Diagnostic> {
+) -> Result<(), Box<Diagnostic>> {
     if changes.is_empty() {
         return Ok(());
     }
@@ -173,11 +173,11 @@ pub(super) fn change(
         let (first, second) = (fitting.next(), fitting.next());
         let constant = match (first, second) {
             (Some(one), None) => one,
-            (Some(one), Some(other)) => return Err(ambiguous(&change.name, one, other)),
-            (None, _) => return Err(unknown(&change.name, &known)),
+            (Some(one), Some(other)) => return Err(Box::new(ambiguous(&change.name, one, other))),
+            (None, _) => return Err(Box::new(unknown(&change.name, &known))),
         };
         let text = constant.written(&change.text);
-        let text = text.map_err(|message| placeless("constant-value", message))?;
+        let text = text.map_err(|message| Box::new(placeless("constant-value", message)))?;
         edits.push((constant.span, text));
     }
     for &id in files {

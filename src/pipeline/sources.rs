@@ -60,7 +60,7 @@ impl Inputs {
             .collect::<Result<Vec<_>, _>>()?;
         let sidecar = self.sidecar.as_ref().map(&mut read).transpose()?;
         constants::change(&mut map, &models, changes)
-            .map_err(|fault| Failure::model(&map, fault))?;
+            .map_err(|fault| Failure::model(&map, *fault))?;
         let names = self.models.iter().filter_map(|path| path.file_name());
         let texts = models.iter().filter_map(|&id| map.file(id));
         let parts: Vec<(String, &str)> = names

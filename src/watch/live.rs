@@ -152,7 +152,7 @@ impl<'s> Live<'s> {
         if let Some((known, run)) = &self.checked
             && *known == changes
         {
-            return Ok(with_options(run, &flags)?);
+            return with_options(run, &flags);
         }
         self.audience.begins("reading");
         self.checked = None;

@@ -159,7 +159,7 @@ mod tests {
                     (puppet, &|| {}),
                     events_in,
                     events,
-                )
+                );
             });
             let next = || seen.recv().unwrap();
             let change = |text: &str| {
