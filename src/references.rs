@@ -123,6 +123,10 @@
 //! # KhronosNeutral
 //! Khronos Group: Khronos PBR Neutral Tone Mapper, 2024. <https://github.com/KhronosGroup/ToneMapping>
 //!
+//! # Krivanek2006
+//! J. Křivánek, K. Bouatouch, S. Pattanaik, J. Žára: Making Radiance and Irradiance Caching Practical: Adaptive Caching and
+//! Neighbor Clamping. Eurographics Symposium on Rendering, 2006.
+//!
 //! # Lafortune1994
 //! E. Lafortune, Y. Willems: Using the Modified Phong Reflectance Model for Physically Based Rendering. Report CW 197,
 //! Katholieke Universiteit Leuven, 1994.
@@ -215,6 +219,13 @@
 //! # Wang2008
 //! W. Wang, B. Jüttler, D. Zheng, Y. Liu: Computation of Rotation Minimizing Frames. ACM Transactions on Graphics 27(1), 2008.
 //! <https://doi.org/10.1145/1330511.1330513>
+//!
+//! # Ward1988
+//! G. Ward, F. Rubinstein, R. Clear: A Ray Tracing Solution for Diffuse Interreflection. SIGGRAPH, 1988.
+//! <https://doi.org/10.1145/54852.378490>
+//!
+//! # WardHeckbert1992
+//! G. Ward, P. Heckbert: Irradiance Gradients. Eurographics Workshop on Rendering, 1992.
 //!
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.

@@ -10,9 +10,14 @@ const fn values(quality: Quality) -> &'static [(&'static str, &'static str)] {
             ("samples", "8"),
             ("max-depth", "6"),
             ("global-photons", "100000"),
+            ("final-gather", "0"),
         ],
         Quality::Preview => &[],
-        Quality::Final => &[("samples", "512"), ("global-photons", "10000000")],
+        Quality::Final => &[
+            ("samples", "512"),
+            ("global-photons", "10000000"),
+            ("final-gather", "1024"),
+        ],
     }
 }
 

@@ -4,8 +4,8 @@ use super::lighting::{Fraction, PlotSize};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
 use super::value::{
-    Area, Brightness, Bytes, Daylight, GridSize, Ground, PhotonCount, Quality, Renderer, Seconds,
-    Size, Threads, Turbidity,
+    Area, Brightness, Bytes, Daylight, GatherRays, GridSize, Ground, PhotonCount, Quality,
+    Renderer, Seconds, Size, Threads, Turbidity,
 };
 use crate::diag::nearest;
 use crate::light::sun_position::{Moment, Place};
@@ -247,6 +247,8 @@ options! {
     caustic_photons: Option<PhotonCount> = "auto", "caustic-photons", "N", Render, Solution, PICTURING;
     /// Area of surface over which photons are averaged, in square metres (GroIMP's *Photon area*); `auto`: one that holds about 100
     photon_area: Option<Area> = "auto", "photon-area", "M2", Render, Solution, PICTURING;
+    /// Rays by which photon mapping gathers indirect light anew where the camera looks; `0`: none, straight from the photons, blotchier
+    final_gather: GatherRays = "256", "final-gather", "N", Render, View, PICTURING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says

@@ -1,6 +1,7 @@
 //! The kinds of values options have, and how each is written.
 
 use crate::color::Rgb;
+use crate::integrator::photon_map::MOST_GATHER_RAYS;
 use crate::math::angle::Angle;
 use crate::turtle::Layers;
 use glam::DVec3;
@@ -42,6 +43,19 @@ impl OptionValue for PhotonCount {
         match text.replace('_', "").parse() {
             Ok(n) if n <= MOST_PHOTONS => Ok(Self(n)),
             _ => Err("a whole number from 0 to 1000000000".into()),
+        }
+    }
+}
+
+/// Rays of a final gather, 0 (none) to 65536.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GatherRays(pub u32);
+
+impl OptionValue for GatherRays {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.replace('_', "").parse() {
+            Ok(n) if n <= MOST_GATHER_RAYS => Ok(Self(n)),
+            _ => Err("a whole number from 0 to 65536".into()),
         }
     }
 }

@@ -337,6 +337,7 @@ fn method(options: &Options) -> Method {
             caustic_photons: options.caustic_photons.value.map(|photons| photons.0),
             photon_area: options.photon_area.value.map(|area| area.0),
             max_depth: options.recursion_depth.value,
+            final_gather: options.final_gather.value.0,
             ..PhotonMapping::default()
         }),
     }

@@ -49,6 +49,13 @@ impl<T: Copy> Grid<T> {
         &self.things
     }
 
+    /// Shows `visit` all things in the grid's cell round `center`, and some that are not there.
+    pub(super) fn around(&self, center: DVec3, visit: impl FnMut(&T)) {
+        let slot = slot(cell(center, self.cell), self.starts.len() - 1);
+        let (begin, end) = (self.starts[slot] as usize, self.starts[slot + 1] as usize);
+        self.things[begin..end].iter().for_each(visit);
+    }
+
     /// Shows `visit` all things that may be within the grid's radius of `center`, each once, and some that are not.
     pub(super) fn near(&self, center: DVec3, mut visit: impl FnMut(&T)) {
         let n_slots = self.starts.len() - 1;

@@ -145,20 +145,40 @@ impl Layer {
 
     /// Weighted sum of the irradiance near a point, and the weights.
     fn near(&self, scene: &Scene, center: DVec3, position: DVec3, normal: DVec3) -> (DVec3, f64) {
-        let reach = USE * self.spacing;
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
         self.samples.near(position, |sample| {
-            let to = sample.position.as_dvec3() - position;
-            let share = to.length_squared() / (reach * reach);
-            let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
-                && to.dot(normal).abs() <= THICKNESS * self.spacing;
-            if share < 1.0 && is_same && !sample.is_hidden(scene, center, position) {
+            if let Some(share) = self.share(sample, position, normal)
+                && !sample.is_hidden(scene, center, position)
+            {
                 let weight = (1.0 - share) * (1.0 - share);
                 sum += sample.irradiance.as_dvec3() * weight;
                 weights += weight;
             }
         });
         (sum, weights)
+    }
+
+    /// The nearest sample in the cell of the grid round a point.
+    fn one(&self, position: DVec3, normal: DVec3) -> Option<Sample> {
+        let mut best: Option<(f64, Sample)> = None;
+        self.samples.around(position, |sample| {
+            if let Some(share) = self.share(sample, position, normal)
+                && best.is_none_or(|(least, _)| share < least)
+            {
+                best = Some((share, *sample));
+            }
+        });
+        best.map(|(_, sample)| sample)
+    }
+
+    /// How far away a sample is, squared, as a share of how far it is used; `None` beyond that and on another surface.
+    fn share(&self, sample: &Sample, position: DVec3, normal: DVec3) -> Option<f64> {
+        let reach = USE * self.spacing;
+        let to = sample.position.as_dvec3() - position;
+        let share = to.length_squared() / (reach * reach);
+        let is_same = sample.normal.as_dvec3().dot(normal) > SAME_NORMAL
+            && to.dot(normal).abs() <= THICKNESS * self.spacing;
+        (share < 1.0 && is_same).then_some(share)
     }
 }
 
@@ -204,6 +224,67 @@ impl IrradianceMap {
         })
     }
 
+    /// Radius of the kernel, metres.
+    pub(super) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Irradiance as [`irradiance`](Self::irradiance) gives it, but from a single sample that is near: coarser, and found much
+    /// faster. For what is summed over many points.
+    pub(super) fn coarse_irradiance(
+        &self,
+        scene: &Scene,
+        point: &SurfacePoint,
+        piece: &Piece,
+        w: DVec3,
+    ) -> Rgb {
+        let normal = facing(point.normal_g, w);
+        if self.knows_wholly(piece) {
+            return self.whole(point, piece, normal);
+        }
+        let position = point.position - self.center;
+        for layer in &self.layers {
+            if let Some(sample) = layer.one(position, normal)
+                && !sample.is_hidden(scene, self.center, position)
+            {
+                return Rgb::from_array(sample.irradiance.as_dvec3().to_array());
+            }
+        }
+        // None in these cells, or something stands before them: perhaps there are others.
+        self.irradiance(scene, point, piece, w)
+    }
+
+    /// Irradiance of the side `normal` of a small piece.
+    fn whole(&self, point: &SurfacePoint, piece: &Piece, normal: DVec3) -> Rgb {
+        let Piece::Flat { first, .. } = *piece else {
+            return Rgb::BLACK;
+        };
+        let key = (first, normal.dot(point.normal_g) < 0.0);
+        let found = self.pieces.binary_search_by_key(&key, |piece| piece.key);
+        found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance)
+    }
+
+    /// Whether the piece is so small that its light is known as a whole.
+    pub(super) fn knows_wholly(&self, piece: &Piece) -> bool {
+        matches!(piece, Piece::Flat { size, .. } if *size <= 2.0 * self.radius)
+    }
+
+    /// Places of the world on its surfaces, not farther apart than the kernel shows, with the normal of the side.
+    pub(super) fn places(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
+        let place = |sample: &Sample| {
+            let position = self.center + sample.position.as_dvec3();
+            (position, sample.normal.as_dvec3())
+        };
+        let layers = self.layers.iter();
+        layers.flat_map(|layer| layer.samples()).map(place)
+    }
+
+    /// Least distance between those places, metres.
+    pub(super) fn spacing(&self) -> f64 {
+        let layers = self.layers.iter().map(Layer::spacing);
+        layers.fold(self.radius, f64::min)
+    }
+
     /// Irradiance at a point, which lies on this piece, on the side that `w` points to, W/m² per channel.
     pub(super) fn irradiance(
         &self,
@@ -213,12 +294,8 @@ impl IrradianceMap {
         w: DVec3,
     ) -> Rgb {
         let normal = facing(point.normal_g, w);
-        if let Piece::Flat { first, size, .. } = *piece
-            && size <= 2.0 * self.radius
-        {
-            let key = (first, normal.dot(point.normal_g) < 0.0);
-            let found = self.pieces.binary_search_by_key(&key, |piece| piece.key);
-            return found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance);
+        if self.knows_wholly(piece) {
+            return self.whole(point, piece, normal);
         }
         let position = point.position - self.center;
         // Where there are fine samples they count; coarser ones fill what they leave.

@@ -14,12 +14,17 @@
 //! grid        photons and samples by place          estimate    irradiance over the real area
 //! irradiance  precomputed, asked by views           view        from the camera to the maps
 //! solution    all of it, kept and as bytes
+//! hemisphere  irradiance and its gradients by rays  cache       gathered irradiance, kept for all cameras
+//! final_gather  indirect light by rays instead of from the map
 //! ```
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
 
+mod cache;
 mod estimate;
+mod final_gather;
 mod grid;
+mod hemisphere;
 mod irradiance;
 mod radius;
 mod solution;
@@ -33,6 +38,8 @@ use super::{Integrator, RadianceEstimator, RenderContext, RenderError, Solution,
 use crate::material::Material;
 use crate::math::rng;
 use crate::scene::Scene;
+use cache::IrradianceCache;
+use final_gather::FinalGather;
 use glam::DVec3;
 use irradiance::IrradianceMap;
 pub use solution::PhotonSolution;
@@ -49,6 +56,9 @@ const LONGEST_PATH: u32 = 1024;
 /// Photons for caustics where their number is not given.
 const CAUSTIC_PHOTONS: u64 = 1_000_000;
 
+/// The most rays of a final gather; more are as many.
+pub const MOST_GATHER_RAYS: u32 = 1 << 16;
+
 /// Settings of photon mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotonMapping {
@@ -60,6 +70,9 @@ pub struct PhotonMapping {
     pub photon_area: Option<f64>,
     /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
     pub max_depth: u32,
+    /// Rays of each [final gather](final_gather), up to [`MOST_GATHER_RAYS`]; 0: indirect light comes straight from the map.
+    /// Without effect where caustics are in the map of all light, for want of photons of their own.
+    pub final_gather: u32,
     /// Photons that may be stored.
     pub most_stored: u64,
 }
@@ -71,6 +84,7 @@ impl Default for PhotonMapping {
             caustic_photons: None,
             photon_area: None,
             max_depth: 8,
+            final_gather: 0,
             most_stored: u64::from(u32::MAX - 1),
         }
     }
@@ -83,7 +97,7 @@ impl Integrator for PhotonMapping {
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         let solution = self.solution(scene, context)?;
-        Ok(Box::new(self.look(scene, Arc::new(solution))))
+        Ok(Box::new(self.look(scene, Arc::new(solution), context.seed)))
     }
 
     fn solve(&self, scene: &Scene, context: &RenderContext<'_>) -> Result<Solution, RenderError> {
@@ -98,7 +112,7 @@ impl Integrator for PhotonMapping {
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         match solution {
-            Solution::Photons(maps) => Ok(Box::new(self.look(scene, maps.clone()))),
+            Solution::Photons(maps) => Ok(Box::new(self.look(scene, maps.clone(), context.seed))),
             Solution::Nothing => self.prepare(scene, context),
         }
     }
@@ -121,14 +135,35 @@ impl PhotonMapping {
         }
     }
 
-    fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>) -> View<'s> {
+    fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>, seed: u64) -> View<'s> {
         View {
             scene,
             sources: Sources::new(scene),
             bodies: Bodies::new(scene),
+            gather: self.gather(scene, &maps, seed),
             maps,
             max_depth: self.max_depth,
         }
+    }
+
+    /// How views find indirect light, unless straight in the maps.
+    fn gather(&self, scene: &Scene, maps: &PhotonSolution, seed: u64) -> Option<FinalGather> {
+        // Rays that find light behind mirrors and glass leave it to the map of caustics; there must be one.
+        let is_specular = scene.materials().iter().any(Material::is_specular);
+        let has_caustics_apart = !is_specular || self.caustic_photons_of(scene) > 0;
+        (self.final_gather > 0 && has_caustics_apart).then(|| {
+            let bounds = scene.bounds();
+            let (center, size) = if bounds.is_empty() {
+                (DVec3::ZERO, 1.0)
+            } else {
+                (bounds.center(), bounds.diagonal().length())
+            };
+            FinalGather {
+                rays: self.final_gather.min(MOST_GATHER_RAYS),
+                seed,
+                cache: IrradianceCache::new(maps.global.as_ref(), center, size),
+            }
+        })
     }
 
     fn solution(

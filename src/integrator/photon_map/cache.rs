@@ -1,0 +1,334 @@
+//! Gathered irradiance kept where it changes slowly, for all cameras.
+//!
+//! Source: [`Ward1988`](crate::references#ward1988), with the gradients of [`WardHeckbert1992`](crate::references#wardheckbert1992)
+//! and the clamping of radii to those of neighbours of [`Krivanek2006`](crate::references#krivanek2006).
+//!
+//! Ward's cache puts records where rays happen to come by, so what a picture shows depends on which came first. Here a picture
+//! must depend on neither the order of threads nor on pictures before it. So the *places* of records are fixed once, on the samples of the photon map,
+//! independent of any camera, in levels: of each level one place in each cell of a grid that is twice as wide as that of the finer
+//! level, and the places of a level are places of all finer ones too. What a record holds is gathered when somebody first asks,
+//! and depends on nothing but its place; so does how far it is trusted. A question begins with the widest level
+//! and takes what is lacking in trust from finer ones, smoothly, so there are no seams. Views add records and the next
+//! view finds them, yet each view shows what it would show alone.
+
+use super::grid::{Grid, cell};
+use super::hemisphere::Gathered;
+use super::irradiance::IrradianceMap;
+use crate::color::Rgb;
+use glam::{DVec3, Vec3};
+use std::sync::OnceLock;
+
+/// The error that a record is trusted up to, in Ward's measure: distance over the harmonic mean distance of surfaces, and how
+/// far the normal turns.
+const TRUST: f64 = 0.35;
+
+/// How far a record is trusted towards the nearest that its rays met: less than 1, because they do not meet the very nearest.
+const BEFORE_WALLS: f64 = 0.8;
+
+/// How far a record is used, in widths of its level: every point of a cell is that near to the record in it.
+const USE: f64 = 1.75;
+
+/// Sum of the weights of records with which they need no finer ones.
+const ENOUGH: f64 = 0.4;
+
+/// How far a record may lie off the tangent plane, as a share of its distance: as on a ball whose normals differ by
+/// [`IrradianceCache::SAME_NORMAL`].
+const SLOPE: f64 = 0.2;
+
+/// The widest level, as a share of the scene's size.
+const WIDEST: f64 = 1.0 / 12.0;
+
+/// The widest level, in spacings of the places.
+const MOST_LEVELS: i32 = 12;
+
+/// Angle in radians under which an eye must see the width of a level to be answered by it: a few pixels. Of what is smaller,
+/// a record would cost more than the rays of the few samples that it serves.
+const LEAST_ANGLE: f64 = 0.005;
+
+/// A place of a record.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    position: Vec3,
+    /// Of the side that the light comes from.
+    pub(super) normal: Vec3,
+    /// The widest level that it is of.
+    level: u8,
+}
+
+/// A record.
+#[derive(Debug)]
+struct Record {
+    irradiance: Vec3,
+    per_turn: [Vec3; 3],
+    per_metre: [Vec3; 3],
+    /// Harmonic mean distance of surfaces, or what the nearest and the gradient allow, metres.
+    distance: f32,
+}
+
+/// What is known of a place.
+#[derive(Debug, Default)]
+struct Slot {
+    /// Empty inside where the surface was not found again.
+    record: OnceLock<Option<Box<Record>>>,
+    /// Its radius, not larger than those of its neighbours let it be.
+    radius: OnceLock<f32>,
+}
+
+/// Where places of a level are.
+#[derive(Clone, Copy, Debug)]
+struct Pin {
+    position: Vec3,
+    at: u32,
+}
+
+#[derive(Debug)]
+struct Level {
+    width: f64,
+    pins: Grid<Pin>,
+}
+
+/// A question to the cache.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// Where, in the world.
+    pub(super) position: DVec3,
+    /// Normal of the side.
+    pub(super) normal: DVec3,
+    /// How far the surface goes or is about flat there, metres.
+    pub(super) flat: f64,
+    /// How far away the eye is, metres.
+    pub(super) eye: f64,
+}
+
+/// Gathered irradiance.
+#[derive(Debug)]
+pub(super) struct IrradianceCache {
+    center: DVec3,
+    spacing: f64,
+    places: Vec<Place>,
+    slots: Vec<Slot>,
+    /// Widest first.
+    levels: Vec<Level>,
+}
+
+impl IrradianceCache {
+    /// Least cosine between normals.
+    pub(super) const SAME_NORMAL: f64 = 0.9;
+
+    /// Room for records where the map has samples, in a scene of this size in metres round `center`.
+    pub(super) fn new(map: Option<&IrradianceMap>, center: DVec3, size: f64) -> Self {
+        let spacing = map.map_or(1.0, IrradianceMap::spacing);
+        let mut places: Vec<Place> = map
+            .into_iter()
+            .flat_map(IrradianceMap::places)
+            .map(|(position, normal)| Place {
+                position: (position - center).as_vec3(),
+                normal: normal.as_vec3(),
+                level: 0,
+            })
+            .collect();
+        let n_levels = (0..MOST_LEVELS)
+            .take_while(|level| spacing * 2_f64.powi(*level) < WIDEST * size)
+            .count()
+            .max(1);
+        let mut members: Vec<u32> = (0..places.len() as u32).collect();
+        let mut levels = Vec::with_capacity(n_levels);
+        for level in 0..n_levels {
+            let width = spacing * 2_f64.powi(level as i32);
+            members = first_of_cells(&places, members, width);
+            for at in &members {
+                places[*at as usize].level = level as u8;
+            }
+            let pin = |at: &u32| Pin {
+                position: places[*at as usize].position,
+                at: *at,
+            };
+            let pins = members.iter().map(pin).collect();
+            let place = |pin: &Pin| pin.position.as_dvec3();
+            levels.push(Level {
+                width,
+                pins: Grid::new(pins, USE * width, place),
+            });
+        }
+        levels.reverse();
+        Self {
+            center,
+            spacing,
+            slots: places.iter().map(|_| Slot::default()).collect(),
+            places,
+            levels,
+        }
+    }
+
+    /// Where a place is in the world.
+    pub(super) fn position(&self, place: &Place) -> DVec3 {
+        self.center + place.position.as_dvec3()
+    }
+
+    /// Distance between places of the finest level, metres.
+    pub(super) fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Irradiance, W/m² per channel, and how certain it is: 1 needs nothing else, 0 is nothing. `gather` makes the record
+    /// of a place, given its number, and must always make the same.
+    pub(super) fn irradiance(
+        &self,
+        asked: &Asked,
+        mut gather: impl FnMut(usize, &Place) -> Option<Gathered>,
+    ) -> (Rgb, f64) {
+        let position = asked.position - self.center;
+        let (mut sum, mut left) = (DVec3::ZERO, 1.0);
+        for level in &self.levels {
+            let fine = level.width / (LEAST_ANGLE * asked.eye) - 1.0;
+            if fine <= 0.0 {
+                break;
+            }
+            if asked.flat < level.width {
+                continue;
+            }
+            let (light, weights) = self.interpolate(level, position, asked.normal, &mut gather);
+            if weights > 0.0 {
+                let certain = left * (weights / ENOUGH).min(1.0) * fine.min(1.0);
+                sum += light * (certain / weights);
+                left -= certain;
+            }
+            if left <= 0.0 {
+                break;
+            }
+        }
+        let certain = 1.0 - left;
+        if certain > 0.0 {
+            (Rgb::from_array((sum / certain).to_array()), certain)
+        } else {
+            (Rgb::BLACK, 0.0)
+        }
+    }
+
+    /// Weighted sum over the records of a level near a point, and the sum of the weights.
+    fn interpolate(
+        &self,
+        level: &Level,
+        position: DVec3,
+        normal: DVec3,
+        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
+    ) -> (DVec3, f64) {
+        let reach = USE * level.width;
+        let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
+        level.pins.near(position, |pin| {
+            let from = position - pin.position.as_dvec3();
+            let share = from.length_squared() / (reach * reach);
+            if share >= 1.0 {
+                return;
+            }
+            let at = pin.at as usize;
+            let own = self.places[at].normal.as_dvec3();
+            let turn = own.dot(normal);
+            let distance = from.length();
+            let off = SLOPE * distance + 0.01 * self.spacing;
+            if turn < Self::SAME_NORMAL || from.dot(own).abs() > off {
+                return;
+            }
+            let Some(record) = self.record(at, gather) else {
+                return;
+            };
+            let radius = self.radius(at, record, gather);
+            let error = distance / radius + (1.0 - turn).max(0.0).sqrt();
+            let trust = 1.0 - error / TRUST;
+            if trust > 0.0 {
+                let weight = trust * (1.0 - share) * (1.0 - share);
+                sum += record.carried(from, own.cross(normal)) * weight;
+                weights += weight;
+            }
+        });
+        (sum, weights)
+    }
+
+    /// The record of a place.
+    fn record(
+        &self,
+        at: usize,
+        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
+    ) -> Option<&Record> {
+        let made = || gather(at, &self.places[at]).map(|found| Box::new(Record::new(&found)));
+        self.slots[at].record.get_or_init(made).as_deref()
+    }
+
+    /// Radius of a record: its own, or less where a neighbour of its level knows of something nearer.
+    fn radius(
+        &self,
+        at: usize,
+        record: &Record,
+        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
+    ) -> f64 {
+        if let Some(known) = self.slots[at].radius.get() {
+            return f64::from(*known);
+        }
+        let place = self.places[at];
+        let level = &self.levels[self.levels.len() - 1 - usize::from(place.level)];
+        let reach = USE * level.width;
+        let position = place.position.as_dvec3();
+        let mut radius = f64::from(record.distance);
+        level.pins.near(position, |pin| {
+            let other = pin.at as usize;
+            let distance = (pin.position.as_dvec3() - position).length();
+            let is_alike =
+                f64::from(self.places[other].normal.dot(place.normal)) > Self::SAME_NORMAL;
+            if other != at
+                && is_alike
+                && distance < reach
+                && let Some(neighbour) = self.record(other, gather)
+            {
+                radius = radius.min(f64::from(neighbour.distance) + distance);
+            }
+        });
+        f64::from(*self.slots[at].radius.get_or_init(|| radius as f32))
+    }
+}
+
+impl Record {
+    fn new(found: &Gathered) -> Self {
+        let irradiance = DVec3::from_array(found.irradiance.to_array());
+        // A record is not trusted beyond the nearest wall, nor farther than its gradient takes it to nothing or to the double.
+        let slopes = found.per_metre.map(DVec3::length);
+        let slope = slopes[0] + slopes[1] + slopes[2];
+        let allowed = irradiance.element_sum() / slope;
+        let open = found.distance.min(found.nearest * (BEFORE_WALLS / TRUST));
+        let distance = if slope > 0.0 { open.min(allowed) } else { open };
+        Self {
+            irradiance: irradiance.as_vec3(),
+            per_turn: found.per_turn.map(|gradient| gradient.as_vec3()),
+            per_metre: found.per_metre.map(|gradient| gradient.as_vec3()),
+            distance: distance as f32,
+        }
+    }
+
+    /// Irradiance so far away from the record, where the normal is turned round this axis.
+    fn carried(&self, from: DVec3, turn: DVec3) -> DVec3 {
+        let here = self.irradiance.as_dvec3();
+        let change = |channel: usize| {
+            self.per_metre[channel].as_dvec3().dot(from)
+                + self.per_turn[channel].as_dvec3().dot(turn)
+        };
+        let carried = here + DVec3::new(change(0), change(1), change(2));
+        carried.clamp(DVec3::ZERO, here * 2.0)
+    }
+}
+
+/// Those of some places that are the first in their cell of this width with their main direction of the normal.
+fn first_of_cells(places: &[Place], members: Vec<u32>, width: f64) -> Vec<u32> {
+    let mut keys: Vec<([i32; 3], u8, u32)> = members
+        .into_iter()
+        .map(|at| {
+            let Place {
+                position, normal, ..
+            } = places[at as usize];
+            let axis = normal.abs().max_position();
+            let direction = 2 * axis as u8 + u8::from(normal[axis] < 0.0);
+            (cell(position.as_dvec3(), width).to_array(), direction, at)
+        })
+        .collect();
+    keys.sort_unstable();
+    keys.dedup_by_key(|(cell, direction, _)| (*cell, *direction));
+    keys.into_iter().map(|(_, _, at)| at).collect()
+}

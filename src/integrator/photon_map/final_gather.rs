@@ -1,0 +1,157 @@
+//! Final gather: indirect light at a surface by rays into its half-space, instead of from the map of photons.
+//!
+//! The map is blurred over its kernel and noisy; a mean of it over a half-space is neither. What a ray carries is what the
+//! surface that it meets sends back as matt: direct light, asked of the [sources](crate::integrator::sources) there, focused light, and
+//! indirect light from the map ([`Jensen1996`](crate::references#jensen1996)). What shines by itself is left out: it is the
+//! direct light of the surface that gathers, or through mirrors and glass its caustics, which come from their own map. What a
+//! ray finds behind a glossy surface counts wholly, as the photons have it.
+//!
+//! Rays that end nearer than the map can resolve gather on with one ray, so corners do not leak.
+//!
+//! Where indirect light changes slowly it comes from a [cache](super::cache). Elsewhere (in corners, on leaves, far away) each sample of
+//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up.
+
+use super::cache::{Asked, IrradianceCache, Place};
+use super::hemisphere::{Gathered, Hemisphere};
+use super::stored::facing;
+use super::view::{Asker, View, frame_of};
+use crate::color::Rgb;
+use crate::integrator::RayCounts;
+use crate::integrator::medium::Media;
+use crate::math::frame::Frame;
+use crate::math::{Ray, rng, warp};
+use crate::sampler::{Sampler, Use};
+use crate::scene::{Piece, SurfacePoint};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// First vertex of the rays of a sample of the picture, and vertices of each.
+const FIRST_VERTEX: u32 = 1 << 22;
+const VERTICES: u32 = 1 << 8;
+
+/// Rays of the cache for each ray of a sample of the picture: samples of a pixel add up.
+const RAYS_PER_OWN: u32 = 32;
+
+/// How far above a place its surface is looked for, in spacings of the places, which are stored with 24 bits.
+const LIFT: f64 = 0.02;
+
+/// How indirect light is gathered.
+#[derive(Debug)]
+pub(super) struct FinalGather {
+    /// Rays of each gather for the cache.
+    pub(super) rays: u32,
+    pub(super) seed: u64,
+    pub(super) cache: IrradianceCache,
+}
+
+impl FinalGather {
+    /// Rays of a sample of the picture where the cache does not answer.
+    fn own_rays(&self) -> u32 {
+        self.rays.div_ceil(RAYS_PER_OWN)
+    }
+}
+
+/// One side of a matt surface at a point.
+pub(super) struct Spot<'a> {
+    pub(super) point: &'a SurfacePoint,
+    pub(super) piece: &'a Piece,
+    /// Geometric normal of the side.
+    pub(super) normal: DVec3,
+    /// Where the point is seen from, through `media`; perhaps from the other side.
+    pub(super) wo: DVec3,
+    pub(super) media: &'a Media,
+}
+
+impl View<'_> {
+    /// Indirect irradiance of a side for an eye that is so far away, W/m² per channel.
+    pub(super) fn accurate_irradiance(
+        &self,
+        gather: &FinalGather,
+        spot: &Spot<'_>,
+        eye: f64,
+        sampler: &Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        // All light of a leaf is known as a whole, but not how it lies on it.
+        let flat = match *spot.piece {
+            Piece::Flat { size, .. } => size,
+            Piece::Body(extent) => extent,
+            Piece::Large => f64::INFINITY,
+        };
+        let asked = Asked {
+            position: spot.point.position,
+            normal: spot.normal,
+            flat,
+            eye,
+        };
+        let record = |at: usize, place: &Place| self.record(gather, at, place, rays);
+        let (cached, certain) = gather.cache.irradiance(&asked, record);
+        if certain >= 1.0 {
+            return cached;
+        }
+        let n = gather.own_rays();
+        let own = self.irradiance_by_rays(spot, n, (FIRST_VERTEX, true), sampler, rays);
+        cached * certain + own * (1.0 - certain)
+    }
+
+    /// Irradiance of a side by `n` rays whose random numbers begin at a vertex, W/m² per channel.
+    pub(super) fn irradiance_by_rays(
+        &self,
+        spot: &Spot<'_>,
+        n: u32,
+        (first_vertex, may_go_on): (u32, bool),
+        sampler: &Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        let mut sampler = sampler.clone();
+        let frame = Frame::from_normal(spot.normal);
+        let mut sum = Rgb::BLACK;
+        for ray in 0..n {
+            let vertex = first_vertex.wrapping_add(ray.wrapping_mul(VERTICES));
+            sampler.start_vertex(vertex);
+            let wi = frame.to_world(warp::cosine_hemisphere(sampler.point(Use::Direction)));
+            let mut media = *spot.media;
+            let ends = [spot.wo, wi];
+            self.bodies
+                .cross(&mut media, spot.point, &frame_of(spot.point), ends);
+            let asker = Asker::Gather { vertex, may_go_on };
+            let ray = spot.point.spawn_ray(wi);
+            sum += self
+                .light_along(&ray, media, asker, &mut sampler, rays)
+                .radiance;
+        }
+        sum * (PI / f64::from(n.max(1)))
+    }
+
+    /// Gathers at place number `at` of the cache; `None` if its surface is not found again.
+    ///
+    /// Depends on nothing but the scene, the maps and the number, so it does not matter who asks first.
+    fn record(
+        &self,
+        gather: &FinalGather,
+        at: usize,
+        place: &Place,
+        rays: &mut RayCounts,
+    ) -> Option<Gathered> {
+        let normal = place.normal.as_dvec3();
+        let lift = LIFT * gather.cache.spacing();
+        let above = gather.cache.position(place) + normal * lift;
+        let down = Ray::new(above, -normal).until(2.0 * lift);
+        rays.closest += 1;
+        let point = self.scene.surface(&down, &self.scene.closest(&down)?);
+        if point.normal_g.dot(normal).abs() < IrradianceCache::SAME_NORMAL {
+            return None;
+        }
+        let media = self.bodies.around(above);
+        let stream = rng::hash(&[gather.seed, at as u64]);
+        let side = facing(point.normal_g, normal);
+        let hemisphere = Hemisphere::new(side, gather.rays);
+        Some(hemisphere.gather(stream, |wi, sampler| {
+            let asker = Asker::Gather {
+                vertex: 0,
+                may_go_on: true,
+            };
+            self.light_along(&point.spawn_ray(wi), media, asker, sampler, rays)
+        }))
+    }
+}
