@@ -115,12 +115,17 @@ struct Page {
     port: u16,
 }
 
-/// Finds a port on this machine alone: `wanted`, one of the next ones if that is taken, or any.
+/// Finds a port on this machine alone: `wanted`, one of the next ones if that is taken, or any; any at once for 0.
 ///
 /// # Errors
 /// If there is none at all.
 pub fn bind(wanted: u16) -> io::Result<TcpListener> {
-    let tried = (wanted..=wanted.saturating_add(NEXT_PORTS)).filter(|port| *port != 0);
+    let last = if wanted == 0 {
+        0
+    } else {
+        wanted.saturating_add(NEXT_PORTS)
+    };
+    let tried = wanted..=last;
     let bound = tried
         .map(|port| TcpListener::bind(SocketAddr::from((Ipv4Addr::LOCALHOST, port))))
         .find_map(Result::ok);
