@@ -12,6 +12,7 @@ use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
 use tempfile::TempDir;
 use visitor::{PATIENCE, Visitor};
 
@@ -78,12 +79,21 @@ impl Watch {
 
     /// Waits until a line holds `word`, and returns it.
     fn wait(&self, word: &str) -> String {
+        self.until(word).pop().unwrap()
+    }
+
+    /// All lines until one holds `word`.
+    fn until(&self, word: &str) -> Vec<String> {
         let mut seen = Vec::new();
         loop {
-            match self.lines.recv_timeout(PATIENCE) {
-                Ok(line) if line.contains(word) => return line,
-                Ok(line) => seen.push(line),
-                Err(_) => panic!("no line with `{word}` after:\n{}", seen.join("\n")),
+            let line = self.lines.recv_timeout(PATIENCE);
+            seen.push(
+                line.unwrap_or_else(|_| {
+                    panic!("no line with `{word}` after:\n{}", seen.join("\n"))
+                }),
+            );
+            if seen.last().is_some_and(|line: &String| line.contains(word)) {
+                return seen;
             }
         }
     }
@@ -150,6 +160,26 @@ fn the_picture_follows_every_way_of_saving_and_survives_mistakes() {
     watch.wait("m.rgg changed");
     watch.wait("m.png: 24x16");
     let last = watch.picture();
+
+    // Emptied, and filled only a while later.
+    fs::write(watch.path("m.rgg"), "").unwrap();
+    std::thread::sleep(Duration::from_millis(150));
+    fs::write(watch.path("m.rgg"), ball("5")).unwrap();
+    let seen = watch.until("m.png: 24x16");
+    assert!(
+        !seen.iter().any(|line| line == "waiting for a change"),
+        "{seen:?}"
+    );
+
+    // Several files at once are one change.
+    fs::write(watch.path("m.rgg"), ball("4")).unwrap();
+    fs::write(watch.path("m.toml"), "[camera]\nfov = 39\n").unwrap();
+    watch.wait("m.rgg, m.toml changed");
+    watch.wait("m.png: 24x16");
+    fs::remove_file(watch.path("m.toml")).unwrap();
+    watch.wait("m.toml changed");
+    watch.wait("m.png: 24x16");
+    assert!(watch.picture() == last, "as it was");
 
     // Half typed: the error is shown with its line, the last good picture stays.
     fs::write(
@@ -255,7 +285,7 @@ fn each_change_repeats_only_what_it_touches() {
     // The sun: no growth, no shapes.
     ask(r#"{"options":{"sun":"90,30"}}"#);
     let state = events.whole("another sun", |state| work(state, "scenes") == 2);
-    for stage in ["checks", "growths", "drawings"] {
+    for stage in ["checks", "growths", "drawings", "accels"] {
         assert_eq!(work(&state, stage), 1, "{stage} after a move of the sun");
     }
 
@@ -265,12 +295,22 @@ fn each_change_repeats_only_what_it_touches() {
     assert_eq!((work(&state, "growths"), work(&state, "scenes")), (1, 2));
     assert_eq!(state["options"]["renderer"]["text"], "raytracer");
 
+    // A colour in the text: grown again, since a rule may ask for it, but no new acceleration structure.
+    ask("{}");
+    events.whole("the plant as it was", |state| work(state, "scenes") == 3);
+    fs::write(watch.path("m.rgg"), PLANT.replace("GREEN", "RED")).unwrap();
+    let state = events.whole("another colour", |state| state["round"] == 2);
+    assert_eq!((work(&state, "growths"), work(&state, "accels")), (2, 1));
+    fs::write(watch.path("m.rgg"), PLANT).unwrap();
+    let state = events.whole("the first colour", |state| state["round"] == 3);
+    assert_eq!((work(&state, "growths"), work(&state, "accels")), (3, 1));
+
     // Steps and constants: growth, and not a byte of the file.
     ask(r#"{"options":{"steps":"3"}}"#);
-    let state = events.whole("another step", |state| work(state, "growths") == 2);
+    let state = events.whole("another step", |state| work(state, "growths") == 4);
     assert_eq!(state["options"]["steps"]["text"], "3");
     ask(r#"{"constants":{"m.LENGTH":"0.75"}}"#);
-    let state = events.whole("another length", |state| work(state, "growths") == 3);
+    let state = events.whole("another length", |state| work(state, "growths") == 5);
     assert!(
         state["command"]
             .as_str()
@@ -292,6 +332,44 @@ fn each_change_repeats_only_what_it_touches() {
         fs::read_to_string(watch.path("m.rgg")).unwrap(),
         PLANT.replace("0.5;", "0.75;")
     );
+    assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn files_that_a_model_reads_are_watched_as_its_texts_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("data")).unwrap();
+    fs::write(at("data/radius.csv"), "1\n").unwrap();
+    let model = "protected void init() { BufferedReader in = new BufferedReader(new FileReader(\"data/radius.csv\"));\n\
+        float r = Float.parseFloat(in.readLine()); in.close(); [ Axiom ==> Sphere(r); ] }\n";
+    fs::write(at("m.rgg"), model).unwrap();
+    let arguments = [
+        "--port",
+        "0",
+        "--steps",
+        "0",
+        "--size",
+        "24x16",
+        "--eye=0,-9,2",
+        "--target=0,0,0",
+        "-o",
+        "m.png",
+    ];
+    let watch = Watch::inside(folder, &arguments);
+    let mut events = watch.visitor().events();
+    events.whole("a first picture", |_| true);
+    let first = watch.picture();
+    fs::write(watch.path("data/radius.csv"), "2\n").unwrap();
+    let state = events.whole("other data", |state| state["round"] == 2);
+    assert_eq!(state["changed"], serde_json::json!(["radius.csv"]));
+    assert!(watch.picture() != first, "{state}");
+    // Away and back again, as some tools save.
+    fs::remove_file(watch.path("data/radius.csv")).unwrap();
+    events.until("a complaint", |state| state["activity"] == "failed");
+    fs::write(watch.path("data/radius.csv"), "1\n").unwrap();
+    events.whole("the data that came back", |_| true);
+    assert!(watch.picture() == first);
     assert_eq!(watch.stop(), Some(0));
 }
 

@@ -107,6 +107,16 @@ pub struct BoxKind {
 /// O(n log n), for whatever boxes; the result does not depend on the number of threads.
 #[must_use]
 pub fn build(boxes: &[Box3], kinds: &[BoxKind]) -> (Bvh, Leaves) {
+    build_unless(boxes, kinds, &|| false)
+}
+
+/// As [`build`], but once `stop` says so it ends soon, with a hierarchy that is good for nothing.
+#[must_use]
+pub fn build_unless(
+    boxes: &[Box3],
+    kinds: &[BoxKind],
+    stop: &(dyn Fn() -> bool + Sync),
+) -> (Bvh, Leaves) {
     let mut bvh = Bvh::default();
     let mut leaves = Leaves {
         ends: Vec::new(),
@@ -124,7 +134,7 @@ pub fn build(boxes: &[Box3], kinds: &[BoxKind]) -> (Bvh, Leaves) {
                     .map_or(FULL, |kind| FULL.div_ceil(kind.per_leaf.max(1))),
             )
         };
-        let tree = merge(cluster(&mut items, &weigh));
+        let tree = merge(cluster(&mut items, &weigh, stop));
         store(tree, &mut bvh.nodes, &mut leaves);
     }
     (bvh, leaves)
@@ -214,13 +224,22 @@ impl Subtree {
 }
 
 /// Joins the items to at most half a batch of subtrees.
-fn cluster(items: &mut [Entry], weigh: &(impl Fn(u32) -> (usize, usize) + Sync)) -> Vec<Subtree> {
-    let parts = if items.len() <= BATCH {
+fn cluster(
+    items: &mut [Entry],
+    weigh: &(impl Fn(u32) -> (usize, usize) + Sync),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Vec<Subtree> {
+    let parts = if stop() {
+        return vec![Subtree::item(&items[0], weigh(items[0].1))];
+    } else if items.len() <= BATCH {
         let item = |entry: &Entry| Subtree::item(entry, weigh(entry.1));
         items.iter().map(item).collect()
     } else {
         let [left, right] = halve(items);
-        let (mut parts, others) = rayon::join(|| cluster(left, weigh), || cluster(right, weigh));
+        let (mut parts, others) = rayon::join(
+            || cluster(left, weigh, stop),
+            || cluster(right, weigh, stop),
+        );
         parts.extend(others);
         parts
     };

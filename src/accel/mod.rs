@@ -18,7 +18,7 @@ mod simd;
 mod stack;
 mod traverse;
 
-pub use build::{Box3, BoxKind, Leaves, build};
+pub use build::{Box3, BoxKind, Leaves, build, build_unless};
 pub use flats::{Candidates, FlatBlock};
 pub use node::Bvh;
 pub use simd::{Kernel, Lanes, WIDTH, dispatch};

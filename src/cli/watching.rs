@@ -11,18 +11,20 @@ use crate::pipeline::exposing;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::inputs::Inputs;
 use crate::pipeline::making::Made;
+use crate::pipeline::reads::Reads;
 use crate::pipeline::report::Phase;
 use crate::pipeline::store::{JsonTarget, PictureTarget};
 use crate::pipeline::studio::{Keep, Run, Studio};
 use crate::pipeline::world::{Machine, World};
 use crate::watch::editor::Editor;
+use crate::watch::files::Follower;
 use crate::watch::live::{Finished, Live, Outlet};
 use crate::watch::page::{self, Service};
 use crate::watch::problems;
 use crate::watch::room::Room;
 use crate::watch::telling::Both;
 use crate::watch::wish::Wish;
-use crate::watch::{Event, files, watch as attend};
+use crate::watch::{Event, Watched, watch as attend};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
@@ -53,10 +55,13 @@ pub(super) fn watch(
     let audience: Arc<dyn Audience> =
         Arc::new(Both::new(shell.terminal.clone(), outlet.room.clone()));
     let listener = audience.clone();
+    let reads = Reads::default();
+    let shared = reads.clone();
     let fresh = move || {
         let path = model.to_owned();
         let mut studio = Studio::new(&shell.world, listener.clone(), path, Keep::All);
         studio.access = access.clone();
+        studio.reads = shared.clone();
         studio
     };
     let told = (outlet.room.clone(), audience);
@@ -65,7 +70,7 @@ pub(super) fn watch(
     if args.once {
         return live.once(&shell.cancel);
     }
-    let follower = files::follow(&shell.world, model, sender.clone());
+    let follower = Follower::new(sender.clone());
     if let Err(error) = &follower {
         let why = format!("no file events here ({error}); looking once a second instead");
         shell.terminal.note(&why);
@@ -77,7 +82,14 @@ pub(super) fn watch(
     };
     let server = serve(shell, args, outlet.room.clone(), desk)?;
     let interrupt = || outlet.room.interrupt();
-    attend(&shell.world, model, (&mut live, &interrupt), sender, events);
+    let watched = Watched {
+        world: &shell.world,
+        model,
+        reads,
+        follower: follower.ok(),
+        interrupt: &interrupt,
+    };
+    attend(watched, &mut live, sender, events);
     outlet.room.close();
     if let Some(server) = server {
         // A server that failed has said so.

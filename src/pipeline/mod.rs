@@ -19,6 +19,7 @@ pub mod lighting;
 pub mod making;
 pub mod packed;
 pub mod project_files;
+pub mod reads;
 pub mod report;
 pub mod solution_file;
 pub mod solving;

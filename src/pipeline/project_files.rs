@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use super::failure::Failure;
+use super::reads::Reads;
 use super::world::World;
 use crate::eval::files::{FileFault, ModelFiles};
 
@@ -81,6 +82,15 @@ impl ProjectFiles {
             read: world.reader(),
             list: world.lister(),
             real: world.real_paths(),
+        }
+    }
+
+    /// The same files; what is read of them is remembered.
+    #[must_use]
+    pub fn remembering(self, reads: &Reads) -> Self {
+        Self {
+            read: reads.recording(self.read),
+            ..self
         }
     }
 

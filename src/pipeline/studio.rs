@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::growing::{self, Drawn};
 use super::inputs::Inputs;
 use super::project_files::{self, Access, ProjectFiles};
+use super::reads::{Reader, Reads};
 use super::report::{Phase, PhaseSeconds, Work};
 use super::solving::SolutionFiles;
 use super::sources::Sources;
@@ -24,7 +25,7 @@ use crate::options::surroundings::SkyKind;
 use crate::options::{Options, Origin, Stage};
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// A model that has been read, with the options that apply to it.
 #[derive(Debug)]
@@ -71,10 +72,14 @@ pub struct Studio<'w> {
     pub changes: Vec<Change>,
     drawn: Option<(ContentHash, Drawn)>,
     pub(super) scene: Option<(ContentHash, Arc<Scene>)>,
+    /// The digest of the shapes of the scene built last.
+    shapes: Option<(u64, Weak<Scene>)>,
     /// The light of that scene, with the key of both.
     pub(super) solution: Option<(ContentHash, Solution)>,
     /// Where the light is read from and written to.
     pub solution_files: SolutionFiles,
+    /// What was read besides the texts.
+    pub reads: Reads,
     /// Time spent since this was last reset.
     pub seconds: PhaseSeconds,
     /// What was done since this was made.
@@ -148,8 +153,10 @@ impl<'w> Studio<'w> {
             changes: Vec::new(),
             drawn: None,
             scene: None,
+            shapes: None,
             solution: None,
             solution_files: SolutionFiles::default(),
+            reads: Reads::default(),
             seconds,
             work: Work::default(),
         }
@@ -212,7 +219,9 @@ impl<'w> Studio<'w> {
         self.audience.begins("growing");
         let memory = budget::memory(self.world, &run.options);
         let audience = &self.audience;
-        let files = Box::new(ProjectFiles::new(self.world, &self.path, &self.access));
+        self.reads.begin(Reader::Growth);
+        let files = ProjectFiles::new(self.world, &self.path, &self.access);
+        let files = Box::new(files.remembering(&self.reads));
         let grown = self.seconds.time(self.world, Phase::Derive, || {
             growing::grow(run, files, memory, audience, cancel)
         });
@@ -227,7 +236,10 @@ impl<'w> Studio<'w> {
     /// Writes what the model has written, and its charts where the user wants them.
     fn write_outputs(&self, growth: &Growth) -> Result<(), Failure> {
         let written = growth.written();
-        let written = written.map(|(place, text)| (place.to_owned(), text.to_owned()));
+        let written = written.map(|(place, text)| {
+            self.reads.wrote(Path::new(place), text.as_bytes());
+            (place.to_owned(), text.to_owned())
+        });
         project_files::write_all(self.world, written)?;
         let Some(folder) = &self.access.charts else {
             return Ok(());
@@ -249,6 +261,9 @@ impl<'w> Studio<'w> {
     /// # Errors
     /// As [`grow`](Self::grow), or if its geometry cannot be a scene.
     pub fn build(&mut self, run: &Run, cancel: &CancelToken) -> Result<Arc<Scene>, Failure> {
+        if !self.reads.are_current(Reader::Growth, self.world) {
+            (self.drawn, self.scene) = (None, None);
+        }
         let panorama = self.panorama(run)?;
         let content = panorama.as_ref().map(|(_, file)| &file[..]);
         let key = run.scene_key().with(&ContentHash::of(content).to_string());
@@ -266,19 +281,31 @@ impl<'w> Studio<'w> {
             .transpose()?;
         let outdoors = Outdoors::new(&run.options, drawn.summary.has_light, panorama)?;
         outdoors.complete(&mut drawn.scene, &drawn.summary, &run.options);
-        let built = self
-            .seconds
-            .time(self.world, Phase::Accel, || Scene::build(drawn.scene));
+        let digest = (self.keep == Keep::All).then(|| drawn.scene.shape_digest());
+        let alike = self.alike(digest);
+        self.work.accels += u64::from(alike.is_none());
+        let built = self.seconds.time(self.world, Phase::Accel, || match alike {
+            Some(alike) => alike.relit(drawn.scene),
+            None => Scene::build_unless(drawn.scene, &|| cancel.is_cancelled()),
+        });
         self.audience.ends();
-        let scene = built.map_err(|error| growing::blame(run, &drawn.organs, &error))?;
         if cancel.is_cancelled() {
             return Err(Failure::Stopped);
         }
-        self.work.accels += 1;
+        let scene = built.map_err(|error| growing::blame(run, &drawn.organs, &error))?;
         self.work.scenes += 1;
         let scene = Arc::new(scene);
+        self.shapes = digest.map(|digest| (digest, Arc::downgrade(&scene)));
         self.scene = Some((key, scene.clone()));
         Ok(scene)
+    }
+
+    /// The scene before, if somebody still has it and its shapes are those with this digest.
+    fn alike(&self, digest: Option<u64>) -> Option<Arc<Scene>> {
+        let (known, scene) = self.shapes.as_ref()?;
+        digest
+            .filter(|digest| digest == known)
+            .and_then(|_| scene.upgrade())
     }
 
     /// Grows the model and draws it for a light model, with the light and the ground that the options ask for.
@@ -323,10 +350,11 @@ impl<'w> Studio<'w> {
             Some(file) => folder_of(Path::new(&*file.name)).join(path),
             None => path.clone(),
         };
-        let file = self
-            .world
-            .read(&path)
-            .map_err(|error| Failure::file("read", &path, &error))?;
+        let file = self.world.read(&path);
+        self.reads.begin(Reader::Scene);
+        self.reads
+            .record(Reader::Scene, &path, file.as_deref().ok());
+        let file = file.map_err(|error| Failure::file("read", &path, &error))?;
         Ok(Some((path, file)))
     }
 

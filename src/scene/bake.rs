@@ -1,5 +1,6 @@
 //! Bringing the shapes of a group into its frame.
 
+use super::Stop;
 use super::description::OrganId;
 use super::error::{Problem, SceneError};
 use super::group::{
@@ -27,7 +28,7 @@ const COVER: usize = 32;
 pub(super) fn bake(
     planned: &PlannedGroup,
     built: &[Group],
-    materials: &[Material],
+    (materials, stop): (&[Material], Stop<'_>),
 ) -> Result<Group, SceneError> {
     let frame = frame_of(planned, built, materials.len())?;
     let mut group = empty_group(frame);
@@ -39,7 +40,7 @@ pub(super) fn bake(
             .instances
             .iter()
             .all(|instance| built[instance.group as usize].is_opaque);
-    arrange(&mut group, built);
+    arrange(&mut group, built, stop)?;
     number_instances(&mut group, built)?;
     Ok(group)
 }
@@ -297,7 +298,7 @@ fn store_instances(
 }
 
 /// Builds the hierarchy and puts everything into the order of its leaves.
-fn arrange(group: &mut Group, built: &[Group]) {
+fn arrange(group: &mut Group, built: &[Group], stop: Stop<'_>) -> Result<(), SceneError> {
     let boxes = boxes(group, built);
     let flats = group.triangles.len() + group.quads.len();
     let kind = |end, per_leaf| BoxKind { end, per_leaf };
@@ -308,7 +309,10 @@ fn arrange(group: &mut Group, built: &[Group]) {
         // Instances are dearer to enter, but a million of them want to be stored small.
         kind(boxes.len(), 2),
     ];
-    let (bvh, leaves) = accel::build(&boxes, &kinds);
+    let (bvh, leaves) = accel::build_unless(&boxes, &kinds, stop);
+    if stop() {
+        return Err(SceneError::Stopped);
+    }
     group.bvh = bvh;
     group.cover = group.bvh.cover(COVER);
     group.bounds = boxes.iter().fold(Bounds3::EMPTY, |bounds, part| {
@@ -353,6 +357,7 @@ fn arrange(group: &mut Group, built: &[Group]) {
         }
     }
     name_leaves(group, &leaves, &items);
+    Ok(())
 }
 
 /// Calls each leaf by the item it holds; triangles and parallelograms, up to eight, are packed into a block for that.

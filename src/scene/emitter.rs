@@ -410,7 +410,7 @@ pub(super) fn collect(scene: &Scene) -> Result<Vec<Emitter>, SceneError> {
         .collect();
     let shines = |shape: &ShapeRecord| shines[shape.material.0 as usize];
     let mut holds_light: Vec<bool> = Vec::with_capacity(scene.groups.len());
-    for group in &scene.groups {
+    for group in scene.groups.iter() {
         let below = group
             .instances
             .iter()

@@ -61,6 +61,9 @@ pub enum SceneError {
         /// How deep they may be.
         limit: usize,
     },
+    /// Whoever wanted it wants it no more.
+    #[error("the building was stopped before it had finished")]
+    Stopped,
 }
 
 /// What is wrong with one shape or instance.

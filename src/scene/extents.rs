@@ -67,7 +67,7 @@ impl Scene {
         let wanted: Vec<bool> = self.materials.iter().map(wanted).collect();
         let wanted = |shape: &ShapeRecord| wanted[shape.material.0 as usize];
         let mut holds: Vec<bool> = Vec::with_capacity(self.groups.len());
-        for group in &self.groups {
+        for group in self.groups.iter() {
             let mut instances = group.instances.iter();
             let below = instances.any(|instance| holds[instance.group as usize]);
             holds.push(below || group.shapes.iter().any(wanted));

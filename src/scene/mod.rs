@@ -10,6 +10,7 @@
 //!   emitter   surfaces that shine, for sampling
 //!   extents   where the surfaces of some materials are
 //!   areas     how much surface each organ has
+//!   digest    whether two worlds differ in more than light and colour
 //! ```
 //! Groups within groups are never copied: a ray is carried into the frame of each instance it enters. A primitive of the
 //! world is therefore not stored anywhere; its number, a [`PrimitiveId`](crate::math::PrimitiveId), counts through all
@@ -45,6 +46,7 @@
 mod areas;
 mod bake;
 pub mod description;
+mod digest;
 mod emitter;
 mod error;
 mod extents;
@@ -73,6 +75,10 @@ use description::{MaterialId, SceneDescription};
 use glam::DAffine3;
 use group::Group;
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Asked now and then whether to go on; `true` if not.
+pub type Stop<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// A world ready for rays.
 #[derive(Debug)]
@@ -80,8 +86,8 @@ pub struct Scene {
     materials: Vec<Material>,
     lights: Vec<Light>,
     environment: Environment,
-    /// Each group after all it refers to; the root is the last.
-    groups: Vec<Group>,
+    /// Each group after all it refers to; the root is the last. Shared by worlds that differ in light and colour only.
+    groups: Arc<[Group]>,
     /// From world coordinates to the root's frame.
     to_root: DAffine3,
     /// Back again.
@@ -119,22 +125,17 @@ impl Scene {
     /// # Errors
     /// The first thing that cannot be part of a scene, naming its organ.
     pub fn build(description: SceneDescription) -> Result<Self, SceneError> {
-        for (index, material) in description.materials.iter().enumerate() {
-            material
-                .validate()
-                .map_err(|source| SceneError::Material { index, source })?;
-        }
-        for (index, light) in description.lights.iter().enumerate() {
-            light
-                .validate()
-                .map_err(|source| SceneError::Light { index, source })?;
-        }
-        description
-            .environment
-            .validate()
-            .map_err(SceneError::Environment)?;
+        Self::build_unless(description, &|| false)
+    }
+
+    /// As [`build`](Self::build), but ends soon once `stop` says so.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build), or [`SceneError::Stopped`].
+    pub fn build_unless(description: SceneDescription, stop: Stop<'_>) -> Result<Self, SceneError> {
+        check_light(&description)?;
         let plan = plan::plan(&description)?;
-        let groups = bake_all(&plan, &description.materials)?;
+        let groups = bake_all(&plan, &description.materials, stop)?;
         let planes = bake::world_planes(&plan.groups)?;
         drop(plan);
 
@@ -145,20 +146,43 @@ impl Scene {
             }
             None => (DAffine3::IDENTITY, Bounds3::EMPTY),
         };
-        let from_root = to_root.inverse();
-        let mut scene = Self {
+        let scene = Self {
             materials: description.materials,
             lights: description.lights,
             environment: description.environment,
-            groups,
+            groups: groups.into(),
             to_root,
-            from_root,
+            from_root: to_root.inverse(),
             planes,
             emitters: Vec::new(),
             bounds,
         };
-        scene.emitters = emitter::collect(&scene)?;
-        Ok(scene)
+        scene.shining()
+    }
+
+    /// The world of `description`, whose [`shape_digest`](SceneDescription::shape_digest) is that of the description that this
+    /// one was built from: what rays walk through is shared.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build).
+    pub fn relit(&self, description: SceneDescription) -> Result<Self, SceneError> {
+        check_light(&description)?;
+        let scene = Self {
+            materials: description.materials,
+            lights: description.lights,
+            environment: description.environment,
+            groups: self.groups.clone(),
+            planes: self.planes.clone(),
+            emitters: Vec::new(),
+            ..*self
+        };
+        scene.shining()
+    }
+
+    /// With the list of what shines.
+    fn shining(mut self) -> Result<Self, SceneError> {
+        self.emitters = emitter::collect(&self)?;
+        Ok(self)
     }
 
     /// The materials, by [`MaterialId`].
@@ -207,7 +231,7 @@ impl Scene {
             world_primitives: self.groups.last().map_or(0, |root| root.total),
             ..SceneStats::default()
         };
-        for group in &self.groups {
+        for group in self.groups.iter() {
             stats.primitives += group.places.len();
             stats.instances += group.instances.len();
             stats.bytes += group.bytes();
@@ -241,8 +265,30 @@ impl Scene {
     }
 }
 
+/// Refuses materials and lights that cannot be.
+fn check_light(description: &SceneDescription) -> Result<(), SceneError> {
+    for (index, material) in description.materials.iter().enumerate() {
+        material
+            .validate()
+            .map_err(|source| SceneError::Material { index, source })?;
+    }
+    for (index, light) in description.lights.iter().enumerate() {
+        light
+            .validate()
+            .map_err(|source| SceneError::Light { index, source })?;
+    }
+    description
+        .environment
+        .validate()
+        .map_err(SceneError::Environment)
+}
+
 /// Bakes the groups level by level, those of one level in parallel.
-fn bake_all(plan: &plan::Plan, materials: &[Material]) -> Result<Vec<Group>, SceneError> {
+fn bake_all(
+    plan: &plan::Plan,
+    materials: &[Material],
+    stop: Stop<'_>,
+) -> Result<Vec<Group>, SceneError> {
     let mut built: Vec<Group> = Vec::with_capacity(plan.groups.len());
     while built.len() < plan.groups.len() {
         // Groups stand after what they refer to, so a run that refers only to what is built can be built at once.
@@ -253,7 +299,7 @@ fn bake_all(plan: &plan::Plan, materials: &[Material]) -> Result<Vec<Group>, Sce
         let run = &plan.groups[built.len()..built.len() + ready];
         let baked: Vec<_> = run
             .par_iter()
-            .map(|group| bake::bake(group, &built, materials))
+            .map(|group| bake::bake(group, &built, (materials, stop)))
             .collect();
         for group in baked {
             built.push(group?);

@@ -314,6 +314,7 @@ impl Runner for Live<'_> {
         self.room.tell(|state| {
             state.round += 1;
             state.changed = changed.to_vec();
+            state.activity = Activity::default();
         });
         while !stop.is_cancelled() {
             let task = self.room.take(true);

@@ -29,4 +29,4 @@ pub mod state;
 pub mod telling;
 pub mod wish;
 
-pub use session::{Event, Runner, watch};
+pub use session::{Event, Runner, Watched, watch};

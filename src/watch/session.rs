@@ -1,11 +1,13 @@
 //! The loop of watching: events in, runs out.
 
 use super::desk::{Desk, Order};
+use super::files::Follower;
 use super::snapshot::Snapshot;
 use crate::integrator::CancelToken;
+use crate::pipeline::reads::Reads;
 use crate::pipeline::world::World;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 
 /// What can happen while watching.
@@ -30,6 +32,33 @@ pub trait Runner: Send {
     fn recover(&mut self);
 }
 
+/// What is watched.
+pub struct Watched<'w> {
+    /// The machine.
+    pub world: &'w dyn World,
+    /// The model.
+    pub model: &'w Path,
+    /// What its runs read besides its texts.
+    pub reads: Reads,
+    /// Who hears of events of files; `None` where there are none.
+    pub follower: Option<Follower>,
+    /// Called whenever a run is told to end: it may sleep.
+    pub interrupt: &'w dyn Fn(),
+}
+
+impl Watched<'_> {
+    /// What there is now; events of all that is there are heard from now on.
+    fn look(&mut self) -> Snapshot {
+        let snapshot = Snapshot::take(self.world, self.model, &self.reads);
+        if let Some(follower) = &mut self.follower {
+            let mut files: Vec<PathBuf> = snapshot.paths().cloned().collect();
+            files.extend(self.reads.paths());
+            follower.follow(&files);
+        }
+        snapshot
+    }
+}
+
 struct Job {
     changed: Vec<String>,
     cancel: CancelToken,
@@ -37,11 +66,10 @@ struct Job {
 
 /// Runs `model` now and after each change, until [`Event::Quit`] or the end of events.
 ///
-/// `sender` is the other end of `events`. `interrupt` is called whenever a run is told to end: it may sleep.
+/// `sender` is the other end of `events`.
 pub fn watch(
-    world: &dyn World,
-    model: &Path,
-    (runner, interrupt): (&mut dyn Runner, &dyn Fn()),
+    watched: Watched<'_>,
+    runner: &mut dyn Runner,
     sender: Sender<Event>,
     events: Receiver<Event>,
 ) {
@@ -57,18 +85,13 @@ pub fn watch(
                 let _ = sender.send(Event::RunFinished);
             }
         });
-        attend(world, model, &jobs, &events, interrupt);
+        attend(watched, &jobs, &events);
     });
 }
 
 /// Owns the state; the only one to decide what is run.
-fn attend(
-    world: &dyn World,
-    model: &Path,
-    jobs: &Sender<Job>,
-    events: &Receiver<Event>,
-    interrupt: &dyn Fn(),
-) {
+fn attend(mut watched: Watched<'_>, jobs: &Sender<Job>, events: &Receiver<Event>) {
+    let world = watched.world;
     let mut cancel = CancelToken::default();
     let start = |changed: Vec<String>, cancel: &CancelToken| {
         jobs.send(Job {
@@ -77,7 +100,7 @@ fn attend(
         })
         .expect("invariant: the worker lives as long as its jobs");
     };
-    let mut desk = Desk::new(Snapshot::take(world, model), world.now());
+    let mut desk = Desk::new(watched.look(), world.now());
     start(Vec::new(), &cancel);
     loop {
         match events.recv_timeout(desk.patience(world.now())) {
@@ -85,7 +108,7 @@ fn attend(
             Ok(Event::RunFinished) => desk.finished(world.now()),
             Ok(Event::Quit) | Err(RecvTimeoutError::Disconnected) => {
                 cancel.cancel();
-                interrupt();
+                (watched.interrupt)();
                 return;
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -93,11 +116,12 @@ fn attend(
         if !desk.patience(world.now()).is_zero() {
             continue;
         }
-        match desk.look(Snapshot::take(world, model), world.now()) {
+        let snapshot = watched.look();
+        match desk.look(snapshot, world.now()) {
             Order::Nothing => {}
             Order::Cancel => {
                 cancel.cancel();
-                interrupt();
+                (watched.interrupt)();
             }
             Order::Start(changed) => {
                 cancel = CancelToken::default();
@@ -153,13 +177,14 @@ mod tests {
             let (world, events_in) = (&world, sender.clone());
             let puppet = &mut puppet;
             scope.spawn(move || {
-                watch(
+                let watched = Watched {
                     world,
-                    Path::new("m/p.rgg"),
-                    (puppet, &|| {}),
-                    events_in,
-                    events,
-                );
+                    model: Path::new("m/p.rgg"),
+                    reads: Reads::default(),
+                    follower: None,
+                    interrupt: &|| {},
+                };
+                watch(watched, puppet, events_in, events);
             });
             let next = || seen.recv().unwrap();
             let change = |text: &str| {

@@ -3,6 +3,7 @@
 use crate::pipeline::assets;
 use crate::pipeline::content_hash::ContentHash;
 use crate::pipeline::inputs::Inputs;
+use crate::pipeline::reads::{Contents, Reads};
 use crate::pipeline::world::World;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,12 +12,14 @@ use std::path::{Path, PathBuf};
 /// that write in place empty a file first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Snapshot {
-    contents: BTreeMap<PathBuf, Option<ContentHash>>,
+    contents: Contents,
+    /// Of what the last run has read besides, what is no longer as it was then.
+    stale: Contents,
 }
 
 impl Snapshot {
-    /// Looks at the inputs of `model` now.
-    pub fn take(world: &dyn World, model: &Path) -> Self {
+    /// Looks at the inputs of `model`, and at what the last run has read besides, now.
+    pub fn take(world: &dyn World, model: &Path, reads: &Reads) -> Self {
         let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs::only(model));
         let read = |path: PathBuf| {
             let hash = world
@@ -40,7 +43,13 @@ impl Snapshot {
         let models = inputs.models.into_iter().chain(inputs.sidecar).map(read);
         Self {
             contents: models.chain(named).collect(),
+            stale: reads.stale(world),
         }
+    }
+
+    /// All the files of the model.
+    pub fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        self.contents.keys()
     }
 
     /// Whether an input is not there, as between the two halves of an editor's save.
@@ -52,6 +61,10 @@ impl Snapshot {
     pub fn changes_since(&self, earlier: &Self) -> Vec<String> {
         let paths = self.contents.keys().chain(earlier.contents.keys());
         let changed = paths.filter(|path| self.contents.get(*path) != earlier.contents.get(*path));
+        // What was stale then and is not now has been read again.
+        let stale = self.stale.iter();
+        let stale = stale.filter(|(path, hash)| earlier.stale.get(*path) != Some(*hash));
+        let changed = changed.chain(stale.map(|(path, _)| path));
         let mut names: Vec<String> = changed
             .map(|path| {
                 path.file_name()
@@ -75,6 +88,7 @@ pub(super) mod tests {
         let hash = content.map(|text| ContentHash::of([text.as_bytes()]));
         Snapshot {
             contents: [(PathBuf::from(name), hash)].into(),
+            stale: Contents::new(),
         }
     }
 
@@ -83,7 +97,7 @@ pub(super) mod tests {
         let world = crate::pipeline::world::fake::FakeWorld::default();
         world.put("m/p.rgg", "void init() [ Axiom ==> Mesh(\"rock.obj\"); ]");
         world.put("m/rock.obj", "v 0 0 0");
-        let take = || Snapshot::take(&world, Path::new("m/p.rgg"));
+        let take = || Snapshot::take(&world, Path::new("m/p.rgg"), &Reads::default());
         let old = take();
         assert!(take().changes_since(&old).is_empty());
         world.put("m/rock.obj", "v 0 0 1");
@@ -91,9 +105,33 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn data_that_a_run_has_read_is_an_input_until_it_is_read_again() {
+        let world = crate::pipeline::world::fake::FakeWorld::default();
+        world.put("m/p.rgg", "x");
+        world.put("m/t.csv", "1");
+        let reads = Reads::default();
+        let take = || Snapshot::take(&world, Path::new("m/p.rgg"), &reads);
+        let read = reads.recording(world.reader());
+        read(Path::new("m/t.csv")).unwrap();
+        let before = take();
+        assert!(take().changes_since(&before).is_empty());
+        world.put("m/t.csv", "2");
+        let started = take();
+        assert_eq!(started.changes_since(&before), ["t.csv"]);
+        // A run that does not come to read it is not started again …
+        assert!(take().changes_since(&started).is_empty());
+        // … nor is one that does.
+        reads.begin(crate::pipeline::reads::Reader::Growth);
+        read(Path::new("m/t.csv")).unwrap();
+        assert!(take().changes_since(&started).is_empty());
+        world.put("m/t.csv", "1");
+        assert_eq!(take().changes_since(&started), ["t.csv"]);
+    }
+
+    #[test]
     fn a_file_that_was_just_emptied_is_torn() {
         let world = crate::pipeline::world::fake::FakeWorld::default();
-        let take = || Snapshot::take(&world, Path::new("m/p.rgg"));
+        let take = || Snapshot::take(&world, Path::new("m/p.rgg"), &Reads::default());
         world.put("m/p.rgg", "");
         assert!(take().is_torn());
         world.put("m/p.rgg", "x");

@@ -1,0 +1,197 @@
+//! Telling scenes apart by their shapes alone: where only lights and colours differ, what rays walk through is the same.
+
+use super::description::{Group, PlacedShape, SceneDescription};
+use crate::geometry::Shape;
+use crate::material::Material;
+use crate::math::rng::hash_on;
+use glam::DAffine3;
+use rayon::prelude::*;
+
+/// Shapes whose digests are made by one thread at a time.
+const CHUNK: usize = 4096;
+
+/// Numbers added up to one.
+#[derive(Clone, Copy)]
+struct Digest(u64);
+
+impl Digest {
+    fn add(&mut self, number: u64) {
+        self.0 = hash_on(self.0, number);
+    }
+
+    fn add_real(&mut self, number: f64) {
+        self.add(number.to_bits());
+    }
+
+    fn add_map(&mut self, map: &DAffine3) {
+        map.to_cols_array().iter().for_each(|x| self.add_real(*x));
+    }
+
+    fn add_all(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        numbers.into_iter().for_each(|x| self.add_real(x));
+    }
+}
+
+impl SceneDescription {
+    /// A number that descriptions share whose shapes, places, organs and numbers of materials are equal, and whose materials
+    /// let light through or not alike. Of others, two share it with a probability of 2⁻⁶⁴.
+    #[must_use]
+    pub fn shape_digest(&self) -> u64 {
+        let mut digest = Digest(0);
+        digest.add(self.root.map_or(u64::MAX, |root| u64::from(root.0)));
+        let opaque = self.materials.iter().map(Material::is_opaque);
+        opaque.for_each(|is_opaque| digest.add(u64::from(is_opaque)));
+        for group in &self.groups {
+            digest.add(group_digest(group));
+        }
+        digest.0
+    }
+}
+
+fn group_digest(group: &Group) -> u64 {
+    let shapes = group.shapes.par_chunks(CHUNK).map(|shapes| {
+        let mut digest = Digest(1);
+        shapes
+            .iter()
+            .for_each(|shape| add_shape(&mut digest, shape));
+        digest.0
+    });
+    let instances = group.instances.par_chunks(CHUNK).map(|instances| {
+        let mut digest = Digest(2);
+        for instance in instances {
+            digest.add(u64::from(instance.group.0) << 32 | u64::from(instance.organ.0));
+            digest.add_map(&instance.to_group);
+        }
+        digest.0
+    });
+    let parts: Vec<u64> = shapes.chain(instances).collect();
+    let mut digest = Digest(3);
+    digest.add(group.shapes.len() as u64);
+    parts.into_iter().for_each(|part| digest.add(part));
+    digest.0
+}
+
+fn add_shape(digest: &mut Digest, placed: &PlacedShape) {
+    digest.add(u64::from(placed.material.0) << 32 | u64::from(placed.organ.0));
+    digest.add_map(&placed.to_group);
+    match &placed.shape {
+        Shape::Sphere { radius } => {
+            digest.add(1);
+            digest.add_real(*radius);
+        }
+        Shape::Frustum {
+            length,
+            base_radius,
+            top_radius,
+            base_cap,
+            top_cap,
+        } => {
+            digest.add(2 | u64::from(*base_cap) << 8 | u64::from(*top_cap) << 9);
+            digest.add_all([*length, *base_radius, *top_radius]);
+        }
+        Shape::Box {
+            half_x,
+            half_y,
+            length,
+        } => {
+            digest.add(3);
+            digest.add_all([*half_x, *half_y, *length]);
+        }
+        Shape::Parallelogram {
+            corner,
+            edge_u,
+            edge_v,
+        } => {
+            digest.add(4);
+            digest.add_all(
+                [corner, edge_u, edge_v]
+                    .into_iter()
+                    .flat_map(|v| v.to_array()),
+            );
+        }
+        Shape::Disk { radius } => {
+            digest.add(5);
+            digest.add_real(*radius);
+        }
+        Shape::Plane => digest.add(6),
+        Shape::Mesh(mesh) => {
+            digest.add(7);
+            digest.add(mesh.positions.len() as u64);
+            digest.add(mesh.normals.len() as u64);
+            digest.add_all(mesh.positions.iter().flat_map(|v| v.to_array()));
+            digest.add_all(mesh.normals.iter().flat_map(|v| v.to_array()));
+            digest.add_all(mesh.uvs.iter().flat_map(|v| v.to_array()));
+            let corners = mesh.triangles.iter().flatten();
+            corners.for_each(|corner| digest.add(u64::from(*corner)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+    use crate::math::Ray;
+    use crate::scene::Scene;
+    use crate::scene::description::{GroupId, MaterialId, OrganId};
+    use glam::DVec3;
+
+    fn world(radius: f64, organ: u32) -> SceneDescription {
+        let ball = PlacedShape {
+            shape: Shape::Sphere { radius },
+            to_group: DAffine3::IDENTITY,
+            material: MaterialId(0),
+            organ: OrganId(organ),
+        };
+        SceneDescription {
+            materials: vec![Material::default()],
+            groups: vec![Group {
+                shapes: vec![ball],
+                instances: vec![],
+            }],
+            root: Some(GroupId(0)),
+            ..SceneDescription::default()
+        }
+    }
+
+    #[test]
+    fn a_world_in_another_light_is_the_one_built_so() {
+        let mut red = world(1.0, 1);
+        red.materials[0] = Material::lambert(Rgb::new(0.9, 0.1, 0.1));
+        let mut lamp = world(1.0, 1);
+        lamp.materials[0] = Material::default().emitting(Rgb::WHITE, Rgb::WHITE);
+        assert_eq!(red.shape_digest(), lamp.shape_digest());
+        let built = Scene::build(lamp.clone()).unwrap();
+        let relit = Scene::build(red).unwrap().relit(lamp).unwrap();
+        assert_eq!(built.materials(), relit.materials());
+        assert_eq!((built.emitters().len(), relit.emitters().len()), (1, 1));
+        assert_eq!(built.bounds(), relit.bounds());
+        let ray = Ray::new(DVec3::new(0.1, -5.0, 0.2), DVec3::Y);
+        assert_eq!(built.closest(&ray), relit.closest(&ray));
+    }
+
+    #[test]
+    fn who_wants_a_world_no_more_does_not_get_it() {
+        let stopped = Scene::build_unless(world(1.0, 1), &|| true);
+        assert_eq!(stopped.unwrap_err(), crate::scene::SceneError::Stopped);
+    }
+
+    #[test]
+    fn shapes_and_organs_count_and_colours_do_not() {
+        let digest = |world: &SceneDescription| world.shape_digest();
+        let one = world(1.0, 1);
+        assert_eq!(digest(&one), digest(&world(1.0, 1)));
+        assert_ne!(digest(&one), digest(&world(1.5, 1)));
+        assert_ne!(digest(&one), digest(&world(1.0, 2)));
+        let mut other = world(1.0, 1);
+        other.materials[0].alpha = 0.5;
+        assert_ne!(digest(&one), digest(&other), "it lets light through");
+        let mut other = world(1.0, 1);
+        other.materials[0] =
+            Material::lambert(Rgb::new(0.1, 0.9, 0.1)).emitting(Rgb::WHITE, Rgb::BLACK);
+        assert_eq!(digest(&one), digest(&other));
+        let mut other = world(1.0, 1);
+        other.groups[0].shapes.clear();
+        assert_ne!(digest(&one), digest(&other));
+    }
+}
