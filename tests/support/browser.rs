@@ -1,4 +1,4 @@
-//! A real browser without a window, told what to do through pipes (the Chrome DevTools Protocol).
+//! A real browser without a window, told what to do through pipes (the protocol of its developer tools).
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
