@@ -80,6 +80,102 @@ fn arriving(scene: &Scene, shape: u32, front: bool, n: u64) -> RunningStats {
     })
 }
 
+/// A black level square 1 m above an endless plane of reflectance 0.6, low sun, and an upright one; all turned by `turn`.
+fn over_endless_ground(turn: DQuat) -> Scene {
+    let turned = |to_world: DAffine3| DAffine3::from_quat(turn) * to_world;
+    let upright = at(0.0, 1.0, 1.0) * DAffine3::from_rotation_x(0.5 * PI);
+    let sun = Light::Directional {
+        direction: turn * DVec3::new(0.8, 0.0, -0.6),
+        irradiance: gray(5.0),
+        origin: turn * DVec3::new(-4000.0, 0.0, 3000.0),
+    };
+    Room::default()
+        .with(square(0.15), turned(at(0.0, 0.0, 1.0)), black())
+        .with(square(0.15), turned(upright), black())
+        .with(
+            Shape::Plane,
+            turned(DAffine3::IDENTITY),
+            Material::lambert(gray(0.6)),
+        )
+        .lit_by(sun)
+        .build()
+}
+
+/// Below the level square lies nothing but lit ground: ρE. The upright one sees as much of it as of the sky: ρE/2, less 0.6 % that
+/// comes from beyond the rings. Shadows take up to 0.6 %. A fault of 9 % in any is seen.
+#[test]
+fn endless_ground_throws_back_what_falls_on_it() {
+    for turn in [DQuat::IDENTITY, DQuat::from_rotation_y(0.7)] {
+        let scene = over_endless_ground(turn);
+        let (power, n) = (0.6 * 5.0 * 0.6 * 0.09, 24_u64);
+        let all: Vec<Arrivals> = (0..n)
+            .map(|seed| follow(&scene, Aim::Everything, &Photons::all(40_000, seed, 64)).0)
+            .collect();
+        for (shape, front, truth) in [
+            (0, false, power),
+            (1, true, 0.5 * power),
+            (1, false, 0.5 * power),
+        ] {
+            let on = |seen: &Arrivals| seen.power(|s, f, _| s == shape && f == front).g;
+            let seen: RunningStats = all.iter().map(on).collect();
+            let error = seen.standard_error() / truth;
+            let off = seen.mean() / truth - 1.0;
+            let expected = -0.012 - 5.0 * error..5.0 * error;
+            assert!(
+                error < 0.015 && expected.contains(&off),
+                "{shape} {front} {turn}: {off} ± {error}"
+            );
+        }
+    }
+}
+
+/// Photons that come from near and from far are alike: none makes a spot.
+#[test]
+fn photons_off_endless_ground_are_about_alike() {
+    let boxes = |scene: Room| {
+        scene
+            .with(
+                Shape::Box {
+                    half_x: 0.5,
+                    half_y: 0.5,
+                    length: 1.0,
+                },
+                DAffine3::IDENTITY,
+                Material::lambert(gray(0.5)),
+            )
+            .with(
+                Shape::Plane,
+                DAffine3::IDENTITY,
+                Material::lambert(gray(0.3)),
+            )
+            .under(Environment {
+                sky: Sky::Uniform(gray(2.0)),
+                sun: None,
+            })
+            .build()
+    };
+    let scene = boxes(Room::default());
+    let (seen, books) = follow(&scene, Aim::Everything, &Photons::all(200_000, 1, 64));
+    let on_box = |wanted: History| -> Vec<f64> {
+        let arrivals = seen
+            .0
+            .iter()
+            .filter(|(shape, _, history, _)| *shape == 0 && *history == wanted);
+        arrivals.map(|(.., power)| power.g).collect()
+    };
+    let (direct, diffuse) = (on_box(History::Direct), on_box(History::Diffuse));
+    let usual = direct.iter().sum::<f64>() / direct.len() as f64;
+    let strongest = diffuse.iter().copied().fold(0.0, f64::max);
+    assert!(
+        direct.len() > 20_000 && diffuse.len() > 2000,
+        "{} {}",
+        direct.len(),
+        diffuse.len()
+    );
+    assert!(strongest < 5.0 * usual, "{strongest} {usual}");
+    assert_eq!(books.imbalance(), [0; 3]);
+}
+
 fn black() -> Material {
     Material::lambert(Rgb::BLACK)
 }

@@ -1,6 +1,7 @@
 //! Where the surfaces of some materials are: boxes that light is aimed at.
 
 use super::Scene;
+use super::description::MaterialId;
 use super::group::{Group, Item, ItemKind, ShapeRecord};
 use super::query::{FIRST_PLANE, Hit};
 use crate::geometry::unit::UnitShape;
@@ -16,6 +17,17 @@ pub struct Extents {
     pub boxes: Vec<Bounds3>,
     /// Whether an infinite plane is among them.
     pub has_planes: bool,
+}
+
+/// An infinite plane of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndlessPlane {
+    /// A point of it in the world, metres.
+    pub point: DVec3,
+    /// Its unit normal in the world, on its front.
+    pub normal: DVec3,
+    /// Its material.
+    pub material: MaterialId,
 }
 
 /// How large the surface is that a primitive belongs to.
@@ -54,10 +66,13 @@ impl Hit {
 }
 
 impl Scene {
-    /// Unit normals of the infinite planes.
-    pub fn plane_normals(&self) -> impl Iterator<Item = DVec3> {
-        let normal = |map: &DAffine3| (map.matrix3.transpose() * DVec3::Z).normalize_or_zero();
-        self.planes.iter().map(move |plane| normal(&plane.to_plane))
+    /// The infinite planes.
+    pub fn planes(&self) -> impl Iterator<Item = EndlessPlane> {
+        self.planes.iter().map(|plane| EndlessPlane {
+            point: plane.to_plane.inverse().translation,
+            normal: (plane.to_plane.matrix3.transpose() * DVec3::Z).normalize_or_zero(),
+            material: plane.shape.material,
+        })
     }
 
     /// Where the surfaces are whose material `wanted` picks: one box for each shape, or for each instance where the shapes would
@@ -280,7 +295,13 @@ mod tests {
             assert!((found.diagonal() - DVec3::ONE).length() < 1e-9);
         }
         assert!(scene(1).extents_of(|_| true, 100).has_planes);
-        assert_eq!(scene(1).plane_normals().collect::<Vec<_>>(), [DVec3::Z]);
+        assert_eq!(
+            scene(1)
+                .planes()
+                .map(|plane| plane.normal)
+                .collect::<Vec<_>>(),
+            [DVec3::Z]
+        );
     }
 
     #[test]

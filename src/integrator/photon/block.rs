@@ -65,6 +65,7 @@ pub fn trace<V: Visitor>(
         bodies: Bodies::new(emission.scene),
         max_depth: photons.max_depth,
         plot: emission.plot,
+        ground: emission.ground,
     };
     let Range { start, end } = photons.range;
     let total = end.saturating_sub(start);

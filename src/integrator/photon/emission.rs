@@ -3,6 +3,7 @@
 //! A photon's power is what its source sends along a ray, divided by the density with which that ray was chosen and by the number
 //! of photons, so that all together carry the power of the sources, whatever the choices.
 
+use super::ground::{Ground, surround};
 use super::plot::Plot;
 use super::source::{Source, Start};
 use super::target::Targets;
@@ -34,11 +35,6 @@ const BY_KIND: f64 = 0.1;
 const PILOTS: usize = 1 << 16;
 const PILOTS_OF_ONE: usize = 1 << 10;
 
-/// How far around the scene's box parallel light and sky are followed where infinite planes throw light back: boxes so many times
-/// as wide, and their share of the photons relative to the box itself. Leaves out about 2 % of what a level plane throws onto an
-/// object as wide as high.
-const RINGS: [(f64, f64); 2] = [(3.0, 0.5), (9.0, 0.5)];
-
 /// Boxes asked of the scene.
 const BOXES: usize = 4096;
 
@@ -58,6 +54,8 @@ pub struct Emission<'s> {
     pub(super) plot: Option<Plot>,
     pub(super) aim: Aim,
     pub(super) has_planes: bool,
+    /// The endless plane that throws light back at what stands on it.
+    pub(super) ground: Option<Ground>,
     sources: Vec<Source>,
     /// Probability of each source, and the sums up to and with it.
     probabilities: Vec<f64>,
@@ -72,6 +70,9 @@ pub struct Photon {
     pub ray: Ray,
     /// What it carries, W per channel.
     pub power: Rgb,
+    /// How many times stronger it is than photons that are sent to the scene itself; at least 1. More than 1 if it lands on an
+    /// endless plane far from it.
+    pub strength: f64,
     /// Whether the surface it meets gets this light also from [`Sources`](crate::integrator::sources::Sources), as direct light.
     pub is_direct: bool,
     /// Random numbers of the rest of its way.
@@ -89,7 +90,14 @@ impl<'s> Emission<'s> {
     #[must_use]
     pub fn reaching(scene: &'s Scene, aim: Aim, besides: Bounds3) -> Self {
         let bounds = scene.bounds().union(&besides);
-        Self::aimed(scene, aim, targets(scene, aim, bounds), bounds)
+        let ground = (aim == Aim::Everything)
+            .then(|| Ground::of(scene, &bounds))
+            .flatten();
+        let targets = targets(scene, aim, bounds, ground.as_ref());
+        Self {
+            ground,
+            ..Self::aimed(scene, aim, targets, bounds)
+        }
     }
 
     /// The light of a plot that repeats itself: from far away, what passes the plot once; from lamps in it, everything.
@@ -116,6 +124,7 @@ impl<'s> Emission<'s> {
             plot: None,
             aim,
             has_planes: scene.stats().planes > 0,
+            ground: None,
             sources: Vec::new(),
             probabilities: Vec::new(),
             cumulated: Vec::new(),
@@ -162,6 +171,7 @@ impl<'s> Emission<'s> {
         (!power.is_black() && power.is_finite()).then_some(Photon {
             ray: start.ray,
             power,
+            strength: start.strength,
             is_direct: start.is_direct,
             sampler,
         })
@@ -195,14 +205,14 @@ impl<'s> Emission<'s> {
     /// Decides how often each source is chosen.
     fn weigh(&mut self) {
         let n_pilots = (PILOTS / self.sources.len().max(1)).clamp(4, PILOTS_OF_ONE);
-        let powers: Vec<Rgb> = (0..)
+        let (powers, wanted): (Vec<Rgb>, Vec<Rgb>) = (0..)
             .zip(&self.sources)
             .map(|(at, source)| {
-                let known = self.known_power(*source);
+                let known = self.known_power(*source).map(|power| (power, power));
                 known.unwrap_or_else(|| self.pilot(*source, at, n_pilots))
             })
-            .collect();
-        let shares = shares(&self.sources, &powers, |source| self.size(source));
+            .unzip();
+        let shares = shares(&self.sources, &wanted, |source| self.size(source));
         let total: f64 = shares.iter().sum();
         if !(total > 0.0 && total.is_finite()) {
             self.sources.clear();
@@ -218,14 +228,17 @@ impl<'s> Emission<'s> {
         self.cumulated = sums.collect();
     }
 
-    /// The mean power of a few photons of a source.
-    fn pilot(&self, source: Source, at: u64, n: usize) -> Rgb {
+    /// The mean power of a few photons of a source, and what it would be if they were as strong as those that are sent to the
+    /// scene itself.
+    fn pilot(&self, source: Source, at: u64, n: usize) -> (Rgb, Rgb) {
         let sampler = |index| Sampler::new(SamplerKind::OwenSobol, rng::hash(&[STREAM, at]), index);
         let starts = (0..n as u32).filter_map(|index| self.start(source, &sampler(index)));
-        let powers = starts
-            .map(|start| start.power)
-            .filter(|power| power.is_finite());
-        powers.sum::<Rgb>() / n as f64
+        let (mut power, mut wanted) = (Rgb::BLACK, Rgb::BLACK);
+        for start in starts.filter(|start| start.power.is_finite()) {
+            power += start.power / n as f64;
+            wanted += start.power / (n as f64 * start.strength);
+        }
+        (power, wanted)
     }
 
     /// What sources of one kind share evenly: one for each, or the area of what has one, m².
@@ -265,7 +278,7 @@ fn shares(sources: &[Source], powers: &[Rgb], size: impl Fn(Source) -> f64) -> V
 }
 
 /// What light is aimed at.
-fn targets(scene: &Scene, aim: Aim, bounds: Bounds3) -> Targets {
+fn targets(scene: &Scene, aim: Aim, bounds: Bounds3, ground: Option<&Ground>) -> Targets {
     let has_planes = scene.stats().planes > 0;
     if aim == Aim::Specular {
         let found = scene.extents_of(Material::is_specular, BOXES);
@@ -278,24 +291,7 @@ fn targets(scene: &Scene, aim: Aim, bounds: Bounds3) -> Targets {
     }
     let mut targets = Targets::new(&[bounds], has_planes);
     if has_planes && aim == Aim::Everything {
-        // Along planes the box grows, across them nothing is thrown back.
-        let normals: Vec<_> = scene.plane_normals().collect();
-        let half = bounds.diagonal() * 0.5;
-        let reach = half.max_element();
-        for (factor, share) in RINGS {
-            let mut wide = bounds;
-            for axis in 0..3 {
-                let is_across = normals.iter().all(|normal| normal[axis].abs() > 0.999);
-                if !is_across {
-                    let more = half[axis].max(reach) * factor - half[axis];
-                    wide.min[axis] -= more;
-                    wide.max[axis] += more;
-                }
-            }
-            // As many photons in the wider box as `share` of those in the box itself.
-            let area = |b: &Bounds3| b.surface_area().max(f64::MIN_POSITIVE);
-            targets.push(wide, share * area(&bounds) / area(&wide));
-        }
+        surround(&mut targets, scene, &bounds, ground);
     }
     targets
 }

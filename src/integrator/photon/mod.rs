@@ -10,13 +10,15 @@
 //! target     what photons are aimed at      source    where they leave each kind of source
 //! emission   which source, how much power   tracer    one photon's way
 //! ledger     exact books                    block     many photons in parallel
-//! plot       where the world repeats itself
+//! plot       where the world repeats itself  ground    what an endless plane throws back
 //! ```
 //! Shining infinite planes send no photons: their power is infinite. Parallel light and sky are sent through the scene's box; where
-//! there are infinite planes, also through boxes nine times as wide, and what planes further away throw back is left out.
+//! there is a matt infinite plane, also onto the plane round it, 64 times as wide, and what it throws back from further away is left out;
+//! with several planes, or one that mirrors, through boxes nine times as wide.
 
 mod block;
 mod emission;
+mod ground;
 mod ledger;
 mod plot;
 mod source;

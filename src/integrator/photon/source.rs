@@ -28,6 +28,8 @@ pub(super) struct Start {
     /// Power of the source along the ray over the density of the ray, W per channel: on average, the power of the source.
     pub(super) power: Rgb,
     pub(super) is_direct: bool,
+    /// How many times more power it stands for than a ray of the source to what is wanted; at least 1.
+    pub(super) strength: f64,
 }
 
 impl Source {
@@ -87,6 +89,7 @@ impl Emission<'_> {
                         ray: Ray::new(start, *direction),
                         power: *irradiance * line.area,
                         is_direct: true,
+                        strength: line.strength,
                     })
                 }
                 lamp @ (Light::Point { position, .. } | Light::Spot { position, .. }) => {
@@ -137,6 +140,7 @@ impl Emission<'_> {
             ray: Ray::new(position, w),
             power,
             is_direct: true,
+            strength: 1.0,
         })
     }
 
@@ -170,6 +174,7 @@ impl Emission<'_> {
             ray: emitter.spawn_ray(&at, w.normalize()),
             power: radiance * (projected / at.pdf_area),
             is_direct: true,
+            strength: 1.0,
         })
     }
 
@@ -181,6 +186,7 @@ impl Emission<'_> {
             ray: Ray::new(self.before_all(line.point, direction), direction),
             power: light.facing_irradiance * line.area,
             is_direct,
+            strength: line.strength,
         })
     }
 

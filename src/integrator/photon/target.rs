@@ -30,6 +30,8 @@ struct Target {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Targets {
     targets: Vec<Target>,
+    /// How many of them are what is wanted; the others surround it.
+    n_wanted: usize,
     /// Whether something infinite is wanted, so that no direction from a lamp is in vain.
     is_boundless: bool,
 }
@@ -41,6 +43,8 @@ pub(super) struct Line {
     pub(super) point: DVec3,
     /// 1 over the density of lines, m².
     pub(super) area: f64,
+    /// How many times larger that is than of lines that pass what is wanted, if this one passes only what surrounds it; else 1.
+    pub(super) strength: f64,
 }
 
 /// A direction from a lamp.
@@ -162,12 +166,13 @@ impl Targets {
     pub(super) fn new(boxes: &[Bounds3], is_boundless: bool) -> Self {
         let few = gathered(boxes.to_vec(), MOST);
         Self {
+            n_wanted: few.len(),
             targets: few.into_iter().map(|b| Target::new(b, 1.0)).collect(),
             is_boundless,
         }
     }
 
-    /// Adds a box in which lines are wanted `density` times as densely.
+    /// Adds a box that surrounds the others, in which lines are wanted `density` times as densely.
     pub(super) fn push(&mut self, bounds: Bounds3, density: f64) {
         self.targets.push(Target::new(bounds, density));
     }
@@ -183,12 +188,24 @@ impl Targets {
         let shares = shares.map(|target| target.density * target.faces(d).element_sum());
         let (chosen, x, total) = choose(shares, u.x)?;
         let point = self.targets[chosen].entry(d, DVec2::new(x, u.y));
-        let targets = self.targets.iter().enumerate();
-        let passed = targets.filter(|(at, target)| *at == chosen || target.is_passed(point, d));
-        let density: f64 = passed.map(|(_, target)| target.density).sum();
+        let (mut density, mut is_wanted) = (0.0, false);
+        for (at, target) in self.targets.iter().enumerate() {
+            if at == chosen || target.is_passed(point, d) {
+                density += target.density;
+                is_wanted |= at < self.n_wanted;
+            }
+        }
+        let strength = if is_wanted {
+            1.0
+        } else {
+            let around = self.targets[self.n_wanted..].iter();
+            let around: f64 = around.map(|target| target.density).sum();
+            (1.0 + around) / density
+        };
         Some(Line {
             point,
             area: total / density,
+            strength,
         })
     }
 

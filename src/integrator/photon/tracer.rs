@@ -1,6 +1,7 @@
 //! Follows one photon from surface to surface.
 
 use super::emission::Photon;
+use super::ground::{Ground, Sector};
 use super::ledger::Ledger;
 use super::plot::{Leg, Plot};
 use crate::color::Rgb;
@@ -73,6 +74,8 @@ pub(super) struct Tracer<'s> {
     pub(super) max_depth: u32,
     /// Where the world repeats itself.
     pub(super) plot: Option<Plot>,
+    /// The endless plane that throws light back at what stands on it.
+    pub(super) ground: Option<Ground>,
 }
 
 /// How often a photon may go round a plot before it is given up: one that flies level may never meet anything.
@@ -82,6 +85,8 @@ const MOST_ROUNDS: u32 = 10_000;
 struct Flight {
     ray: Ray,
     power: Rgb,
+    /// How many times stronger it is than photons that are sent to the scene itself; at least 1.
+    strength: f64,
     media: Media,
     history: History,
     depth: u32,
@@ -94,6 +99,8 @@ struct Arrival<'s> {
     optics: Optics<'s>,
     /// Part of the power that meets the surface which goes straight on, in the mean.
     straight: Rgb,
+    /// Whether it is an endless plane.
+    is_plane: bool,
 }
 
 /// What comes of a scattering.
@@ -111,6 +118,7 @@ impl<'s> Tracer<'s> {
         let mut flight = Flight {
             ray: self.plot.map_or(photon.ray, |plot| plot.enter(&photon.ray)),
             power: photon.power,
+            strength: photon.strength,
             media: self.bodies.around(photon.ray.origin),
             history: if photon.is_direct {
                 History::Direct
@@ -226,6 +234,7 @@ impl<'s> Tracer<'s> {
                 point,
                 optics,
                 straight: Rgb::BLACK,
+                is_plane: hit.is_plane(),
             });
         };
         let scale = books.scale();
@@ -245,6 +254,7 @@ impl<'s> Tracer<'s> {
                 point,
                 optics,
                 straight,
+                is_plane: hit.is_plane(),
             };
             let nothing = Scattered {
                 reflected: Rgb::BLACK,
@@ -275,6 +285,7 @@ impl<'s> Tracer<'s> {
             point,
             optics,
             straight,
+            is_plane: hit.is_plane(),
         })
     }
 
@@ -302,10 +313,21 @@ impl<'s> Tracer<'s> {
         }
         books.chance.add(sent);
         books.chance.add(through);
-        let Some(sample) = scattered.onward else {
+        let (onward, density, wi) = if let Some(sector) = self.only_way(flight, arrival) {
+            // What goes where nothing is escapes without chance.
+            let onward = scattered.reflected * sector.share();
+            books.escaped.add(sent);
+            books.escaped.take(scale.quanta(onward));
+            books.chance.take(sent);
+            books.chance.add(scale.quanta(onward));
+            let wi = sector.direction(flight.sampler.point(Use::Direction));
+            (onward, None, wi)
+        } else if let Some(sample) = scattered.onward {
+            (met * sample.weight, Some(sample.density), sample.wi)
+        } else {
             return false;
         };
-        let Some(power) = survivor(met, met * sample.weight, &flight.sampler) else {
+        let Some(power) = flight.survivor(met, onward) else {
             return false;
         };
         books.chance.take(scale.quanta(power));
@@ -316,17 +338,26 @@ impl<'s> Tracer<'s> {
         }
 
         // On to the next surface.
-        let ends = [-flight.ray.direction, sample.wi];
+        let ends = [-flight.ray.direction, wi];
         let frame = arrival.frame();
         self.bodies
             .cross(&mut flight.media, &arrival.point, &frame, ends);
-        flight.history = match (flight.history, sample.density) {
-            (History::Direct | History::Specular, Density::Delta) => History::Specular,
+        flight.history = match (flight.history, density) {
+            (History::Direct | History::Specular, Some(Density::Delta)) => History::Specular,
             _ => History::Diffuse,
         };
         flight.power = power;
-        flight.ray = arrival.point.spawn_ray(sample.wi);
+        flight.ray = arrival.point.spawn_ray(wi);
         true
+    }
+
+    /// The directions in which something may be, for a photon that a plane far from the scene throws back.
+    fn only_way(&self, flight: &Flight, arrival: &Arrival<'_>) -> Option<Sector> {
+        if !arrival.is_plane || flight.strength <= 1.0 {
+            return None;
+        }
+        let up = arrival.frame().facing_normal(-flight.ray.direction);
+        self.ground.as_ref()?.sector(arrival.point.position, up)
     }
 }
 
@@ -385,16 +416,21 @@ impl Arrival<'_> {
     }
 }
 
-/// Russian roulette: the power with which a photon goes on that met a surface with the power `met` and would leave it with
-/// `sent`, or `None` if it does not. Its strongest channel stays as strong as it was, so that photons stay alike
-/// ([`Jensen2001`, §5.2](crate::references#jensen2001)).
-fn survivor(met: Rgb, sent: Rgb, sampler: &Sampler) -> Option<Rgb> {
-    let survival = sent.max_channel() / met.max_channel();
-    if survival.is_nan() || survival <= 0.0 {
-        return None;
+impl Flight {
+    /// Russian roulette: the power with which the photon goes on that met a surface with the power `met` and would leave it with
+    /// `sent`, or `None` if it does not. Its strongest channel stays as strong as it was, so that photons stay alike
+    /// ([`Jensen2001`, §5.2](crate::references#jensen2001)); one that is stronger than others comes down to them.
+    fn survivor(&mut self, met: Rgb, sent: Rgb) -> Option<Rgb> {
+        let usual = met.max_channel() / self.strength;
+        let survival = sent.max_channel() / usual;
+        if survival.is_nan() || survival <= 0.0 {
+            return None;
+        }
+        if survival >= 1.0 {
+            self.strength = survival.min(self.strength);
+            return Some(sent);
+        }
+        self.strength = 1.0;
+        (self.sampler.point(Use::Choice).y < survival).then(|| sent / survival)
     }
-    if survival >= 1.0 {
-        return Some(sent);
-    }
-    (sampler.point(Use::Choice).y < survival).then(|| sent / survival)
 }
