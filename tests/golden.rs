@@ -9,6 +9,7 @@ use understory::check::{SourceModel, check};
 use understory::diag::{Diagnostic, Diagnostics, Severity, SourceMap};
 use understory::growth::{Growth, GrowthOptions};
 use understory::integrator::CancelToken;
+use understory::interpret::DecodedPictures;
 use understory::pipeline::audience::Audience;
 use understory::pipeline::light_models::SceneLight;
 use understory::syntax::parse;
@@ -91,6 +92,7 @@ fn run(text: &str) -> Run {
     let mut growth =
         Growth::new(&model, GrowthOptions::default(), output, Box::new(|| false)).unwrap();
     growth.set_light_solver(Box::new(SceneLight {
+        pictures: DecodedPictures::default(),
         memory: 1 << 30,
         body_nodes: 1 << 20,
         cancel: CancelToken::default(),

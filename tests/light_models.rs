@@ -9,6 +9,7 @@ use models::Model;
 use std::sync::Arc;
 use understory::diag::{Diagnostics, SourceMap};
 use understory::integrator::CancelToken;
+use understory::interpret::DecodedPictures;
 use understory::pipeline::audience::Audience;
 use understory::pipeline::light_models::SceneLight;
 
@@ -37,6 +38,7 @@ fn run(modules: &str, body: &str) -> String {
         body_nodes: 1 << 20,
         cancel: CancelToken::default(),
         audience: Arc::new(Nobody),
+        pictures: DecodedPictures::default(),
     }));
     match model.growth.init() {
         Ok(()) => model.printed(),

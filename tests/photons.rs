@@ -102,7 +102,7 @@ fn over_endless_ground(turn: DQuat) -> Scene {
 }
 
 /// Below the level square lies nothing but lit ground: ρE. The upright one sees as much of it as of the sky: ρE/2, less 0.6 % that
-/// comes from beyond the rings. Shadows take up to 0.6 %. A fault of 9 % in any is seen.
+/// comes from beyond the rings. Shadows take up to 0.6 %. A fault of 10 % in any is seen.
 #[test]
 fn endless_ground_throws_back_what_falls_on_it() {
     for turn in [DQuat::IDENTITY, DQuat::from_rotation_y(0.7)] {
@@ -122,7 +122,7 @@ fn endless_ground_throws_back_what_falls_on_it() {
             let off = seen.mean() / truth - 1.0;
             let expected = -0.012 - 5.0 * error..5.0 * error;
             assert!(
-                error < 0.015 && expected.contains(&off),
+                error < 0.02 && expected.contains(&off),
                 "{shape} {front} {turn}: {off} ± {error}"
             );
         }

@@ -24,7 +24,7 @@ use understory::growth::{Growth, GrowthOptions};
 use understory::integrator::{
     CancelToken, Integrator, Path, RadianceEstimator, RayCounts, Raytracer, RenderContext,
 };
-use understory::interpret::{Interpretation, Limits, interpret};
+use understory::interpret::{DecodedPictures, Interpretation, Limits, interpret, interpret_again};
 use understory::light::{Environment, Sky};
 use understory::material::image::Image;
 use understory::material::texture::{Filter, Layer, Pictures, Texture};
@@ -348,7 +348,8 @@ fn files() -> Files {
     ]))
 }
 
-fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
+/// A model that has drawn nothing yet.
+fn grown(rules: &str) -> Growth {
     let text = format!("protected void init() [ Axiom ==> {rules}; ]");
     let file = SourceMap::default().add("model.rgg", text.as_str());
     let (ast, mut diagnostics) = parse(file, &text);
@@ -358,15 +359,23 @@ fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
     }]);
     diagnostics.append(checked);
     assert!(diagnostics.is_empty(), "{rules}: {diagnostics:#?}");
-    let mut files = files();
-    let leaf = files.0["leaf.png"].clone();
-    files.0.insert("m/../leaf.png".to_owned(), leaf);
     let ignore = Box::new(|_: &str| {});
     let mut growth =
         Growth::new(&model, GrowthOptions::default(), ignore, Box::new(|| false)).unwrap();
-    growth.set_files(Box::new(files));
+    growth.set_files(Box::new(all_files()));
     growth.init().unwrap();
-    interpret(&mut growth.sketch(), Limits::default())
+    growth
+}
+
+fn all_files() -> Files {
+    let mut files = files();
+    let leaf = files.0["leaf.png"].clone();
+    files.0.insert("m/../leaf.png".to_owned(), leaf);
+    files
+}
+
+fn draw(rules: &str) -> Result<Interpretation, Box<Diagnostic>> {
+    interpret(&mut grown(rules).sketch(), Limits::default())
 }
 
 /// The materials of what is drawn, without complaints.
@@ -477,6 +486,53 @@ fn equal_pictures_are_one_and_equal_shaders_one_material() {
          [Parallelogram(1, 1).(setShader(shader(\"copy.png\")))]",
     );
     assert_eq!(drawn.unwrap().scene.materials.len(), 1);
+}
+
+/// A model that asks for light at each step is drawn as often: its pictures are decoded once, and again if they change.
+#[test]
+fn pictures_are_decoded_once_for_all_drawings() {
+    let mut growth = grown(
+        "[Parallelogram(1, 1).(setShader(shader(\"leaf.png\")))] \
+         [Parallelogram(1, 1).(setShader(shader(\"mask.png\")))]",
+    );
+    let mut pictures = DecodedPictures::default();
+    let mut draw = |growth: &mut Growth, memory: u64| {
+        let limits = Limits {
+            memory,
+            ..Limits::default()
+        };
+        let drawn = interpret_again(&mut growth.sketch(), limits, &mut pictures);
+        drawn.map(|drawn| (drawn.scene.materials, pictures.n_decoded()))
+    };
+    let room = Limits::default().memory;
+    let (first, n) = draw(&mut growth, room).unwrap();
+    let (second, still) = draw(&mut growth, room).unwrap();
+    assert_eq!((n, still, first == second), (2, 2, true));
+    let mut files = all_files();
+    let other = files.0["mask.png"].clone();
+    files.0.insert("leaf.png".to_owned(), other);
+    growth.set_files(Box::new(files));
+    let (third, still) = draw(&mut growth, room).unwrap();
+    // Both are now the one that is known, and the other is forgotten.
+    assert_eq!((still, third.len(), third == first), (2, 1, false));
+    growth.set_files(Box::new(all_files()));
+    assert_eq!(draw(&mut growth, room).unwrap(), (first, 3));
+    // What is decoded already takes its memory all the same: the same limit is the least that is enough.
+    let enough = |draws: &mut dyn FnMut(u64) -> bool| (0..2000).map(|n| 8 * n).find(|n| draws(*n));
+    let mut again = |memory| {
+        draw(&mut growth, room).unwrap();
+        draw(&mut growth, memory).is_ok()
+    };
+    let known = enough(&mut again);
+    let mut fresh = |memory| {
+        let limits = Limits {
+            memory,
+            ..Limits::default()
+        };
+        interpret(&mut growth.sketch(), limits).is_ok()
+    };
+    assert_eq!(known, enough(&mut fresh));
+    assert!(known.is_some());
 }
 
 #[test]

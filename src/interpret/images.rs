@@ -8,9 +8,55 @@ use crate::diag::nearest;
 use crate::eval::files::{FileFault, ModelFiles};
 use crate::eval::picture::candidates;
 use crate::graph::NodeId;
-use crate::material::image::{Coverage, Image};
+use crate::material::image::{Coverage, Image, ImageFault};
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// Pictures that were decoded for one drawing of a model, for the next one: those whose files have not changed need not be
+/// decoded again.
+#[derive(Debug, Default)]
+pub struct DecodedPictures {
+    /// By what cuts holes and the content of the file. Looked up only, never iterated into what is drawn.
+    by_content: HashMap<Coverage, HashMap<Vec<u8>, Arc<Image>>>,
+    n_decoded: u64,
+}
+
+impl DecodedPictures {
+    /// How many pictures had to be decoded so far.
+    #[must_use]
+    pub fn n_decoded(&self) -> u64 {
+        self.n_decoded
+    }
+
+    /// The picture in these bytes, which may take so many bytes of memory.
+    fn picture(
+        &mut self,
+        bytes: &[u8],
+        of: Coverage,
+        memory: u64,
+    ) -> Result<Arc<Image>, ImageFault> {
+        let known = self.by_content.entry(of).or_default();
+        if let Some(image) = known.get(bytes)
+            && image.bytes() as u64 <= memory
+        {
+            return Ok(Arc::clone(image));
+        }
+        let image = Arc::new(Image::decode(bytes, memory)?.with_coverage(of));
+        self.n_decoded += 1;
+        known.insert(bytes.to_vec(), Arc::clone(&image));
+        Ok(image)
+    }
+
+    /// Forgets all but these: memory is for what is drawn.
+    fn keep(&mut self, used: &[Arc<Image>]) {
+        for known in self.by_content.values_mut() {
+            known.retain(|_, image| {
+                used.iter()
+                    .any(|used| Arc::ptr_eq(used, image) || used == image)
+            });
+        }
+    }
+}
 
 /// The pictures of a model.
 #[derive(Debug, Default)]
@@ -21,6 +67,24 @@ pub(super) struct Images {
     contained: HashMap<(usize, Coverage), Arc<Image>>,
     /// Each picture once.
     known: Vec<Arc<Image>>,
+    /// What was decoded for this drawing and those before it.
+    decoded: DecodedPictures,
+}
+
+impl Images {
+    /// Begins with what was decoded before.
+    pub(super) fn with(decoded: DecodedPictures) -> Self {
+        Self {
+            decoded,
+            ..Self::default()
+        }
+    }
+
+    /// Ends with what is worth keeping.
+    pub(super) fn into_decoded(mut self) -> DecodedPictures {
+        self.decoded.keep(&self.known);
+        self.decoded
+    }
 }
 
 /// What a shader that asks for pictures gets them from.
@@ -160,7 +224,7 @@ impl<'p> Finder<'p> {
         });
         let image = Image::linear(2, 2, vec![first, second, second, first]);
         let image = image.ok()?.with_coverage(of);
-        Some(self.shared(image))
+        Some(self.shared(Arc::new(image)))
     }
 
     /// Remembers that something is drawn otherwise than it was asked for.
@@ -170,8 +234,8 @@ impl<'p> Finder<'p> {
 
     fn decode(&mut self, name: &str, bytes: &[u8], of: Coverage) -> Option<Arc<Image>> {
         let left = self.memory.saturating_sub(self.taken as u64);
-        match Image::decode(bytes, left) {
-            Ok(image) => Some(self.shared(image.with_coverage(of))),
+        match self.images.decoded.picture(bytes, of, left) {
+            Ok(image) => Some(self.shared(image)),
             Err(fault) => {
                 self.fail(name, fault.to_string(), None);
                 None
@@ -180,12 +244,12 @@ impl<'p> Finder<'p> {
     }
 
     /// The one of equal pictures.
-    fn shared(&mut self, image: Image) -> Arc<Image> {
-        if let Some(known) = self.images.known.iter().find(|known| ***known == image) {
+    fn shared(&mut self, image: Arc<Image>) -> Arc<Image> {
+        let is_same = |known: &&Arc<Image>| Arc::ptr_eq(known, &image) || **known == image;
+        if let Some(known) = self.images.known.iter().find(is_same) {
             return Arc::clone(known);
         }
         self.taken += image.bytes();
-        let image = Arc::new(image);
         self.images.known.push(Arc::clone(&image));
         image
     }

@@ -46,7 +46,7 @@ mod walk;
 
 pub use appearance::{Appearance, Lamp, LampKind, Purpose};
 pub use failure::{Failure, explain};
-pub use images::Finder;
+pub use images::{DecodedPictures, Finder};
 pub use organs::{Organ, Organs};
 pub use sensors::Sensor;
 pub use source::{Body, Source};
@@ -115,8 +115,22 @@ pub struct Summary {
 /// # Errors
 /// The first organ that cannot be drawn, a body that fails, or drawing beyond the limits.
 pub fn interpret<S: Source>(source: &mut S, limits: Limits) -> Result<Interpretation, Failure> {
+    interpret_again(source, limits, &mut DecodedPictures::default())
+}
+
+/// Draws a model whose pictures may have been decoded for an earlier drawing, and keeps those of this one.
+///
+/// # Errors
+/// As [`interpret`]; the pictures are then forgotten.
+pub fn interpret_again<S: Source>(
+    source: &mut S,
+    limits: Limits,
+    pictures: &mut DecodedPictures,
+) -> Result<Interpretation, Failure> {
     let mut painter = walk::Painter::new(source, limits);
+    painter.images = images::Images::with(std::mem::take(pictures));
     painter.draw_world()?;
+    *pictures = std::mem::take(&mut painter.images).into_decoded();
     Ok(painter.finish())
 }
 

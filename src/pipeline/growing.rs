@@ -14,7 +14,7 @@ use crate::eval;
 use crate::eval::files::ModelFiles;
 use crate::growth::{Growth, GrowthOptions};
 use crate::integrator::CancelToken;
-use crate::interpret::{self, Organs, Purpose, Sensor, Summary};
+use crate::interpret::{self, DecodedPictures, Organs, Purpose, Sensor, Summary};
 use crate::options::{Options, Origin};
 use crate::scene::SceneError;
 use crate::scene::description::SceneDescription;
@@ -160,6 +160,7 @@ pub fn grow(
         body_nodes: run.options.max_modules.value.get(),
         cancel: cancel.clone(),
         audience: audience.clone(),
+        pictures: DecodedPictures::default(),
     }));
     growth.init().map_err(blame)?;
     let n_steps = steps(&run.options, &growth);

@@ -10,7 +10,7 @@ use crate::integrator::interception::{
     Interception, InterceptionError, Lighting, OrganLight, SensorField, Wanted,
 };
 use crate::integrator::{CancelToken, RenderContext};
-use crate::interpret::{self, Interpretation, Organs, Purpose};
+use crate::interpret::{self, DecodedPictures, Interpretation, Organs, Purpose};
 use crate::scene::{Scene, SceneError};
 use std::sync::Arc;
 
@@ -24,6 +24,8 @@ pub struct SceneLight {
     pub cancel: CancelToken,
     /// Who is told how far it is.
     pub audience: Arc<dyn Audience>,
+    /// Pictures of the last time that light was asked for; empty at first.
+    pub pictures: DecodedPictures,
 }
 
 impl LightSolver for SceneLight {
@@ -62,7 +64,7 @@ impl LightSolver for SceneLight {
 
 impl SceneLight {
     fn draw(
-        &self,
+        &mut self,
         program: &Program,
         machine: &mut Machine,
         settings: &LightSettings,
@@ -74,7 +76,8 @@ impl SceneLight {
             purpose: Purpose::LightModel,
             ..interpret::Limits::default()
         };
-        interpret::interpret(&mut Sketch::within_step(program, machine), limits)
+        let mut sketch = Sketch::within_step(program, machine);
+        interpret::interpret_again(&mut sketch, limits, &mut self.pictures)
     }
 
     fn trace(
