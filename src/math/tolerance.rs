@@ -211,3 +211,7 @@ pub const LARGEST_KERNEL: f64 = 0.05;
 /// measured; ten million times smaller would let photons miss the rim of what they are aimed at. Used by
 /// [`crate::integrator::photon`].
 pub const TARGET_SLACK: f64 = 1e-9;
+
+/// Photons are not sent to rings of an endless plane that may throw back less towards the scene than this part of the light that
+/// the scene gets itself.
+pub const RING_SHARE: f64 = 1e-3;

@@ -14,7 +14,7 @@ use crate::color::Rgb;
 use crate::material::Material;
 use crate::math::Bounds3;
 use crate::math::functions::{asin, cos, sin};
-use crate::math::tolerance::TARGET_SLACK;
+use crate::math::tolerance::{RING_SHARE, TARGET_SLACK};
 use crate::scene::Scene;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -24,9 +24,6 @@ const RINGS: [f64; 10] = [1.5, 2.2, 3.2, 5.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.
 
 /// Half width of the innermost ring over the cylinder's radius.
 const CLOSE: f64 = 1.3;
-
-/// Rings that may send less than this part of the scene's own light towards it are left out, with all beyond.
-const LEAST: f64 = 1e-3;
 
 /// The same, and the share of the photons in each relative to the box itself, where nothing is known of what planes throw back:
 /// they mirror, or there are several. Photons there are as many times stronger as they are rarer.
@@ -196,7 +193,7 @@ pub(super) fn surround(
     };
     let rings = ground.rings(plane.point, half.max_element());
     let matters = |(extent, wanted): &(f64, f64)| {
-        grown(*extent).surface_area() * wanted >= LEAST * bounds.surface_area()
+        grown(*extent).surface_area() * wanted >= RING_SHARE * bounds.surface_area()
     };
     let rings: Vec<_> = rings.into_iter().take_while(matters).collect();
     for (at, (extent, wanted)) in rings.iter().enumerate() {
