@@ -792,3 +792,30 @@ fn light_that_a_picture_lacks_is_told_and_kept_in_the_report() {
         assert_eq!(warnings, serde_json::json!([]), "{renderer}");
     }
 }
+
+#[test]
+fn plants_are_numbered_and_their_errors_reached() {
+    let bench = Bench::new(
+        "module Stem extends F(0.5, 0.1);\n\
+         protected void init() [ Axiom ==> [ Plane() ] for (int i : 0:2) ([ Translate(i, 0, 0) Stem [ RU(60) Stem ] ]); ]\n",
+    );
+    bench.succeed("light m.rgg -o o.csv --photons 4000 --plant-error 5% --report r.json");
+    let table = fs::read_to_string(bench.path("o.csv")).unwrap();
+    let mut rows = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let head = rows.next().unwrap();
+    let column = |name: &str| head.iter().position(|at| *at == name).unwrap();
+    let (module, plant) = (column("module"), column("plant"));
+    let found: Vec<(String, String)> = rows
+        .map(|row| (row[module].to_owned(), row[plant].to_owned()))
+        .collect();
+    let stem = |n: &str| ("Stem".to_owned(), n.to_owned());
+    // The ground is no plant; the two stems of each are one.
+    let mut expected = Vec::new();
+    for n in ["0", "1", "2"] {
+        expected.extend([stem(n), stem(n)]);
+    }
+    expected.push(("Plane".to_owned(), String::new()));
+    assert_eq!(found, expected, "{table}");
+}

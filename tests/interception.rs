@@ -41,6 +41,7 @@ fn settings(photons: u64) -> Interception {
         wanted: Wanted::default(),
         most_photons: photons,
         memory: 1 << 30,
+        plants: vec![],
     }
 }
 
@@ -605,6 +606,7 @@ fn wanted_errors_are_reached_and_true() {
     let scene = outdoors(shapes, materials, DAffine3::IDENTITY);
     let wanted = Wanted {
         of_organs: Some(0.02),
+        of_plants: None,
         of_total: Some(0.005),
     };
     let how = Interception {
@@ -628,6 +630,52 @@ fn wanted_errors_are_reached_and_true() {
     };
     let found = solve_with(&never, &scene, 6, None).unwrap();
     assert!(!found.is_reached && found.n_photons <= 2016);
+}
+
+/// The error of a plant is that of the sum over its organs, and what is no plant is in no total.
+#[test]
+fn plants_are_sums_of_their_organs_with_errors_of_their_own() {
+    let (materials, shapes) = leaves();
+    let scene = outdoors(shapes, materials, DAffine3::IDENTITY);
+    let how = Interception {
+        wanted: Wanted {
+            of_plants: Some(0.01),
+            ..Wanted::default()
+        },
+        most_photons: 1 << 30,
+        plants: vec![Some(1), Some(0), None, Some(1), Some(0), Some(1)],
+        ..settings(800)
+    };
+    let found = solve_with(&how, &scene, 6, None).unwrap();
+    assert!(found.is_reached && found.n_photons > 800 && found.plants.len() == 2);
+    let absorbed = |organ: usize| found.organs[organ].absorbed.sum();
+    let parts = [
+        absorbed(1) + absorbed(4),
+        absorbed(0) + absorbed(3) + absorbed(5),
+    ];
+    for (plant, sum) in found.plants.iter().zip(parts) {
+        assert!((plant.absorbed.sum() / sum - 1.0).abs() < 1e-9);
+        assert!(plant.errors.absorbed <= 0.01 * sum);
+    }
+    let total = found.total.absorbed.sum();
+    assert!(
+        (total / (parts[0] + parts[1]) - 1.0).abs() < 1e-9,
+        "{total}"
+    );
+    // Organs alone are not known as well: it was not they that were waited for.
+    let of_organ = |organ: usize| found.organs[organ].errors.absorbed / absorbed(organ);
+    assert!((0..6).map(of_organ).fold(0.0, f64::max) > 0.01);
+    // The errors told are those there are.
+    let truth = solve(&scene, 6, None, 400_000);
+    let of_two = truth.organs[1].absorbed.sum() + truth.organs[4].absorbed.sum();
+    let known = truth.organs[1].errors.absorbed + truth.organs[4].errors.absorbed;
+    let plant = &found.plants[0];
+    assert_close(
+        plant.absorbed.sum(),
+        of_two,
+        plant.errors.absorbed.hypot(known),
+        "plant",
+    );
 }
 
 /// Sensors read the irradiance on their plane and change nothing.

@@ -258,8 +258,9 @@ pub struct ValidateArgs {
     after_help = "Examples:\n  understory light plant.rgg -o organs.csv\n  \
                         understory light plant.rgg --steps 9 -o organs.csv --organ-error 5%\n  \
                         understory light crop.rgg -o organs.csv --periodic 1.5,0.75 --sun 135,40\n\n\
-                        One row for each organ: power absorbed, reflected, transmitted and received, in W, with standard errors.\n\
-                        A model without a light stands in daylight, as in its pictures."
+                        One row for each organ: power absorbed, reflected, transmitted and received, in W, with standard errors,\n\
+                        and the number of the plant that the organ belongs to: what hangs on one branch of the root. An endless\n\
+                        plane is no plant; of its light only what falls round the model is counted. A model without a light stands in daylight, as in its pictures."
 )]
 pub struct LightArgs {
     #[command(flatten)]

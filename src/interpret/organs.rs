@@ -1,8 +1,9 @@
 //! Which node of the graph a primitive belongs to.
 
 use crate::diag::Span;
-use crate::graph::{NodeId, TypeId, TypeTable};
+use crate::graph::{Graph, NodeId, Payload, TypeId, TypeTable};
 use crate::scene::description::OrganId;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A node that was drawn.
@@ -73,6 +74,37 @@ impl Organs {
     #[must_use]
     pub fn list(&self) -> &[Organ] {
         &self.list
+    }
+
+    /// The plant that each organ belongs to: what hangs on one edge of the root of the graph. Plants are numbered in the order in
+    /// which their first organs are drawn.
+    #[must_use]
+    pub fn plants<O: Payload>(&self, graph: &Graph<O>) -> Vec<u32> {
+        // Looked up only, never iterated. Each node is climbed over once.
+        let mut known: HashMap<NodeId, u32> = HashMap::new();
+        let mut n_plants = 0;
+        let mut plant_of = |organ: &Organ| {
+            let (mut node, mut climbed) = (organ.node, Vec::new());
+            let plant = loop {
+                if let Some(plant) = known.get(&node) {
+                    break *plant;
+                }
+                // Also ends the climb round a ring.
+                known.insert(node, n_plants);
+                climbed.push(node);
+                match graph.predecessor(node) {
+                    Some((above, _)) if above != graph.root() => node = above,
+                    _ => break n_plants,
+                }
+            };
+            if plant == n_plants {
+                n_plants += 1;
+            } else {
+                known.extend(climbed.into_iter().map(|node| (node, plant)));
+            }
+            plant
+        };
+        self.list.iter().map(&mut plant_of).collect()
     }
 
     /// Number of organs so far.

@@ -289,6 +289,8 @@ options! {
     photons: NonZeroU64 = "1000000", "photons", "N", Light, Machine, &[Light];
     /// Follows photons until 19 of 20 lit organs know what they absorb with at most this relative standard error
     organ_error: Option<Fraction> = "none", "organ-error", "FRACTION", Light, Machine, &[Light];
+    /// Follows photons until 19 of 20 lit plants, each what hangs on one branch of the root, know what all their organs absorb together with at most this relative standard error
+    plant_error: Option<Fraction> = "none", "plant-error", "FRACTION", Light, Machine, &[Light];
     /// Follows photons until the light that all organs absorb together is known with at most this relative standard error
     total_error: Option<Fraction> = "none", "total-error", "FRACTION", Light, Machine, &[Light];
     /// Photons after which a wanted error is given up

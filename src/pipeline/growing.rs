@@ -37,6 +37,8 @@ pub struct Drawn {
     pub summary: Summary,
     /// What measures light; none in drawings for pictures.
     pub sensors: Vec<Sensor>,
+    /// The plant that each organ belongs to; none in drawings for pictures.
+    pub plants: Vec<u32>,
 }
 
 /// What `derive --json` writes.
@@ -223,8 +225,16 @@ pub fn draw(
         purpose,
         ..interpret::Limits::default()
     };
-    match growth.drawing(|sketch| interpret::interpret(sketch, limits)) {
-        Ok(drawn) => {
+    let drawn: Result<_, interpret::Failure> = growth.drawing(|sketch| {
+        let drawn = interpret::interpret(sketch, limits)?;
+        let plants = match purpose {
+            Purpose::LightModel => drawn.organs.plants(sketch.graph()),
+            Purpose::Picture => vec![],
+        };
+        Ok((drawn, plants))
+    });
+    match drawn {
+        Ok((drawn, plants)) => {
             let organs = Arc::new(drawn.organs);
             Ok((
                 Drawn {
@@ -232,6 +242,7 @@ pub fn draw(
                     organs,
                     summary: drawn.summary,
                     sensors: drawn.sensors,
+                    plants,
                 },
                 drawn.warnings,
             ))

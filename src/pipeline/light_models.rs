@@ -95,6 +95,7 @@ impl SceneLight {
             wanted: Wanted::default(),
             most_photons: 0,
             memory: self.memory,
+            plants: vec![],
         };
         let audience = &self.audience;
         audience.begins("tracing light");

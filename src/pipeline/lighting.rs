@@ -33,7 +33,7 @@ const OTHER_COLUMNS: &str = "copies,area_m2,hits,\
     reflected_red,reflected_green,reflected_blue,reflected,reflected_error,\
     transmitted_red,transmitted_green,transmitted_blue,transmitted,transmitted_error,\
     received_front,received_back,received,received_error,\
-    sensed_red,sensed_green,sensed_blue,sensed";
+    sensed_red,sensed_green,sensed_blue,sensed,plant";
 
 /// The light on a grown model.
 #[derive(Debug)]
@@ -47,6 +47,8 @@ pub struct FoundLight {
     sensed: Vec<Option<Rgb>>,
     /// Whether a wanted error was asked for.
     has_wish: bool,
+    /// The plant of each organ, if it belongs to one.
+    plants: Vec<Option<u32>>,
 }
 
 /// Grows the model of a run and counts the light on its organs.
@@ -60,6 +62,7 @@ pub fn light(
 ) -> Result<FoundLight, Failure> {
     let drawn = studio.draw_for_light(run, cancel)?;
     let (world, organs) = (studio.world, drawn.organs.clone());
+    let mut plants: Vec<Option<u32>> = drawn.plants.iter().copied().map(Some).collect();
     let sensors = SensorField::new(drawn.sensors.clone())
         .map_err(|error| growing::blame(run, &organs, &error))?;
     studio.audience.begins("building the scene");
@@ -69,7 +72,13 @@ pub fn light(
     studio.audience.ends();
     let (scene, plot, areas) = built?;
 
-    let how = settings(&run.options, budget::memory(world, &run.options));
+    for plane in scene.planes() {
+        // The ground is no plant: how much light falls on it has no end.
+        if let Some(plant) = plants.get_mut(plane.owner.0 as usize) {
+            *plant = None;
+        }
+    }
+    let how = settings(&run.options, budget::memory(world, &run.options), plants);
     let audience = studio.audience.clone();
     audience.begins("tracing light");
     let context = RenderContext {
@@ -95,20 +104,23 @@ pub fn light(
         organs,
         areas,
         has_wish: how.wanted != Wanted::default(),
+        plants: how.plants,
     })
 }
 
-fn settings(options: &Options, memory: u64) -> Interception {
+fn settings(options: &Options, memory: u64, plants: Vec<Option<u32>>) -> Interception {
     Interception {
         photons: options.photons.value.get(),
         batches: BATCHES,
         max_depth: options.max_depth.value.unwrap_or(MOST_SCATTERINGS),
         wanted: Wanted {
             of_organs: options.organ_error.value.map(|wanted| wanted.0),
+            of_plants: options.plant_error.value.map(|wanted| wanted.0),
             of_total: options.total_error.value.map(|wanted| wanted.0),
         },
         most_photons: options.most_photons.value.get(),
         memory,
+        plants,
     }
 }
 
@@ -196,6 +208,8 @@ impl FoundLight {
                 push(&mut out, bands.map(|bands| bands[band]));
             }
             push(&mut out, sensed.map(|sensed| sensed.sum()));
+            let plant = self.plants.get(number as usize).copied().flatten();
+            push(&mut out, plant.map(f64::from));
             out.push('\n');
         }
         out

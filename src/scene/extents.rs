@@ -1,7 +1,7 @@
 //! Where the surfaces of some materials are: boxes that light is aimed at.
 
 use super::Scene;
-use super::description::MaterialId;
+use super::description::{MaterialId, OrganId};
 use super::group::{Group, Item, ItemKind, ShapeRecord};
 use super::query::{FIRST_PLANE, Hit};
 use crate::geometry::unit::UnitShape;
@@ -28,6 +28,8 @@ pub struct EndlessPlane {
     pub normal: DVec3,
     /// Its material.
     pub material: MaterialId,
+    /// The organ that it belongs to as a whole.
+    pub owner: OrganId,
 }
 
 /// How large the surface is that a primitive belongs to.
@@ -72,6 +74,7 @@ impl Scene {
             point: plane.to_plane.inverse().translation,
             normal: (plane.to_plane.matrix3.transpose() * DVec3::Z).normalize_or_zero(),
             material: plane.shape.material,
+            owner: plane.shape.instance_organ.unwrap_or(plane.shape.organ),
         })
     }
 

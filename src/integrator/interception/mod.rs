@@ -39,6 +39,9 @@ pub struct Interception {
     pub most_photons: u64,
     /// Bytes that bins may take.
     pub memory: u64,
+    /// The plant that each organ belongs to, by organ number; `None` for what is no plant, such as the ground, which then counts
+    /// in no total either. Organs beyond the list belong to no plant; an empty list puts all organs into the total.
+    pub plants: Vec<Option<u32>>,
 }
 
 /// Standard errors to reach, as fractions of what is measured.
@@ -46,6 +49,8 @@ pub struct Interception {
 pub struct Wanted {
     /// Of the power that an organ absorbs; 19 of 20 lit organs shall reach it.
     pub of_organs: Option<f64>,
+    /// Of the power that the organs of a plant absorb together; 19 of 20 lit plants shall reach it.
+    pub of_plants: Option<f64>,
     /// Of the power that all organs together absorb.
     pub of_total: Option<f64>,
 }
@@ -88,7 +93,9 @@ impl Interception {
         plot: Option<Plot>,
         context: &RenderContext<'_>,
     ) -> Result<Lighting, InterceptionError> {
-        let bytes = Sums::bytes(n_organs + 1, sensors.len());
+        let n_plants = self.plants.iter().flatten().max();
+        let n_plants = n_plants.map_or(0, |last| *last as usize + 1);
+        let bytes = Sums::bytes(n_organs + n_plants + 1, sensors.len());
         if bytes > self.memory {
             return Err(InterceptionError::Memory {
                 organs: n_organs,
@@ -99,7 +106,7 @@ impl Interception {
             Some(plot) => Emission::into_plot(scene, plot),
             None => Emission::reaching(scene, Aim::Everything, sensors.bounds()),
         };
-        let mut sums = Sums::new(n_organs + 1, sensors.len());
+        let mut sums = Sums::new(n_organs + 1, sensors.len(), (&self.plants, n_plants));
         let mut next = self.photons.max(1);
         for round in 0_u64.. {
             self.round([round, next], &emission, sensors, &mut sums, context)?;
@@ -123,7 +130,7 @@ impl Interception {
         [round, photons]: [u64; 2],
         emission: &Emission<'_>,
         sensors: &SensorField,
-        sums: &mut Sums,
+        sums: &mut Sums<'_>,
         context: &RenderContext<'_>,
     ) -> Result<(), InterceptionError> {
         let n_batches = u64::from(self.batches.max(1));

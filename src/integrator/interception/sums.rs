@@ -58,9 +58,11 @@ pub struct Books {
 pub struct Lighting {
     /// By organ number.
     pub organs: Vec<OrganLight>,
+    /// By plant number.
+    pub plants: Vec<OrganLight>,
     /// On what belongs to no organ: the ground, say.
     pub rest: OrganLight,
-    /// On all organs together, without `rest`.
+    /// On all organs together, without `rest` and what is no plant.
     pub total: OrganLight,
     /// What each sensor reads, W/m² per channel.
     pub sensed: Vec<Rgb>,
@@ -182,9 +184,12 @@ impl Sum {
 
 /// All batches so far.
 #[derive(Debug)]
-pub(super) struct Sums {
+pub(super) struct Sums<'p> {
     /// The last one is for what belongs to no organ.
     organs: Vec<Sum>,
+    plants: Vec<Sum>,
+    /// By organ number.
+    plant_of: &'p [Option<u32>],
     total: Sum,
     sensed: Vec<Rgb>,
     sensed_running: Vec<Rgb>,
@@ -194,7 +199,7 @@ pub(super) struct Sums {
     n_rays: u64,
 }
 
-impl Sums {
+impl<'p> Sums<'p> {
     /// Bytes that so many bins and sensors need.
     pub(super) const fn bytes(n_bins: usize, n_sensors: usize) -> u64 {
         let per_bin = (size_of::<Sum>() + size_of::<Bin>()) as u64;
@@ -204,13 +209,19 @@ impl Sums {
             .saturating_add((n_sensors as u64).saturating_mul(per_sensor))
     }
 
-    pub(super) fn new(n_bins: usize, n_sensors: usize) -> Self {
+    pub(super) fn new(
+        n_bins: usize,
+        n_sensors: usize,
+        (plant_of, n_plants): (&'p [Option<u32>], usize),
+    ) -> Self {
         let balanced = Books {
             is_balanced: true,
             ..Books::default()
         };
         Self {
             organs: vec![Sum::default(); n_bins],
+            plants: vec![Sum::default(); n_plants],
+            plant_of,
             total: Sum::default(),
             sensed: vec![Rgb::BLACK; n_sensors],
             sensed_running: vec![Rgb::BLACK; n_sensors],
@@ -238,12 +249,20 @@ impl Sums {
         ledger: &Ledger,
     ) {
         let mut total = Bin::default();
+        let mut of_plants = vec![Bin::default(); self.plants.len()];
         let last = bins.len().saturating_sub(1);
         for (at, (sum, bin)) in self.organs.iter_mut().zip(bins).enumerate() {
             sum.add_batch(&Powers::of(bin, ledger), bin.hits);
-            if at < last {
+            let plant = self.plant_of.get(at).copied().flatten();
+            if at < last && (self.plant_of.is_empty() || plant.is_some()) {
                 total += bin;
             }
+            if let Some(plant) = plant {
+                of_plants[plant as usize] += bin;
+            }
+        }
+        for (sum, bin) in self.plants.iter_mut().zip(&of_plants) {
+            sum.add_batch(&Powers::of(bin, ledger), bin.hits);
         }
         self.total
             .add_batch(&Powers::of(&total, ledger), total.hits);
@@ -266,7 +285,8 @@ impl Sums {
 
     /// Ends a round of so many batches of `n` photons each.
     pub(super) fn end_round(&mut self, n_batches: u64, n: u64) {
-        for sum in self.organs.iter_mut().chain([&mut self.total]) {
+        let all = self.organs.iter_mut().chain(&mut self.plants);
+        for sum in all.chain([&mut self.total]) {
             sum.end_round(n_batches, n);
         }
         // Means over batches, times photons.
@@ -293,18 +313,21 @@ impl Sums {
 
     /// How many times larger than wanted the errors are; at most 1 if all are reached, 0 if none is wanted.
     pub(super) fn excess(&self, wanted: Wanted) -> f64 {
-        let of_organs = wanted.of_organs.map_or(0.0, |wanted| {
-            let organs = &self.organs[..self.organs.len().saturating_sub(1)];
-            let mut errors: Vec<f64> = organs.iter().filter_map(Sum::relative_error).collect();
+        let of_most = |sums: &[Sum], wanted: Option<f64>| {
+            let Some(wanted) = wanted else { return 0.0 };
+            let mut errors: Vec<f64> = sums.iter().filter_map(Sum::relative_error).collect();
             errors.sort_unstable_by(f64::total_cmp);
             // 19 of 20 lie at or below this one.
             let place = (errors.len() * 19).div_ceil(20).saturating_sub(1);
             errors.get(place).map_or(0.0, |error| error / wanted)
-        });
+        };
+        let organs = &self.organs[..self.organs.len().saturating_sub(1)];
+        let of_organs = of_most(organs, wanted.of_organs);
+        let of_plants = of_most(&self.plants, wanted.of_plants);
         let of_total = wanted.of_total.map_or(0.0, |wanted| {
             self.total.relative_error().unwrap_or(0.0) / wanted
         });
-        of_organs.max(of_total)
+        of_organs.max(of_plants).max(of_total)
     }
 
     pub(super) fn finish(self, is_reached: bool) -> Lighting {
@@ -313,7 +336,9 @@ impl Sums {
         let mut organs: Vec<OrganLight> =
             self.organs.iter().map(|sum| sum.finish(photons)).collect();
         let rest = organs.pop().unwrap_or_default();
+        let plants = self.plants.iter().map(|sum| sum.finish(photons));
         Lighting {
+            plants: plants.collect(),
             organs,
             rest,
             total: self.total.finish(photons),
