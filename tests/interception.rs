@@ -15,13 +15,14 @@ use std::f64::consts::PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;
 use understory::integrator::interception::{
-    Interception, InterceptionError, Lighting, SensorField, Wanted,
+    Interception, InterceptionError, Lighting, OrganLight, SensorField, Wanted,
 };
 use understory::integrator::photon::Plot;
 use understory::integrator::{CancelToken, RenderContext};
 use understory::interpret::Sensor;
 use understory::light::{Environment, Light, Sky};
 use understory::material::Material;
+use understory::math::stats::RunningStats;
 use understory::math::{Ray, rng};
 use understory::scene::Scene;
 use understory::scene::description::{
@@ -492,12 +493,36 @@ fn a_canopy_without_absorption_keeps_nothing() {
     assert!((found.books.escaped.sum() / emitted - 1.0).abs() < 1e-9);
 }
 
-/// C-69: what photons bring is what rays traced back from the leaf find, leaf by leaf.
+/// Light from above meets the front of what looks up and the back of what looks down.
+#[test]
+fn light_is_told_by_the_side_that_it_meets() {
+    let (leaf, up) = level(DVec2::new(1.0, 1.0), 0.0);
+    let down = DAffine3::from_translation(DVec3::X * 3.0) * DAffine3::from_rotation_x(PI);
+    let shapes = vec![placed(leaf.clone(), up, 0, 0), placed(leaf, down, 0, 1)];
+    let scene = Scene::build(world(vec![black()], shapes, vec![sun(0.0, 0.0)])).unwrap();
+    let found = solve(&scene, 2, None, 4000);
+    for (organ, side) in [(0, 0), (1, 1)] {
+        let received = found.organs[organ].received.map(|power| power.r);
+        assert!((received[side] - 1.0).abs() < 0.05, "{organ}: {received:?}");
+        assert_eq!(received[1 - side], 0.0, "{organ}");
+    }
+}
+
+/// C-69: what photons bring is what rays traced back from the leaf find, leaf by leaf, from a sky and from a sun.
 #[test]
 fn forward_and_backward_agree() {
     let (_, shapes) = leaves();
     let sky = Rgb::splat(1.0);
-    let mut drawn = world(vec![black(), black(), black()], shapes.clone(), vec![]);
+    let lamp = sun(0.6, 1.0);
+    let Light::Directional {
+        direction,
+        irradiance,
+        ..
+    } = lamp
+    else {
+        panic!("parallel light")
+    };
+    let mut drawn = world(vec![black(), black(), black()], shapes.clone(), vec![lamp]);
     drawn.environment.sky = Sky::Uniform(sky);
     let scene = Scene::build(drawn).unwrap();
     let found = solve(&scene, 6, None, 200_000);
@@ -522,7 +547,12 @@ fn forward_and_backward_agree() {
             let d = x * (s * angle.cos()) + side.cross(x) * (s * angle.sin()) + side * z;
             let from = leaf.to_group.transform_point3(at) + side * 1e-9;
             // Irradiance π L from each side.
-            let value = scene.transmittance(&Ray::new(from, d.normalize())).r * 2.0 * PI;
+            let of_sky = scene.transmittance(&Ray::new(from, d.normalize())).r * 2.0 * PI;
+            let to_sun = -direction;
+            let lit = normal * normal.dot(to_sun).signum();
+            let from = leaf.to_group.transform_point3(at) + lit * 1e-9;
+            let seen_sun = scene.transmittance(&Ray::new(from, to_sun)).r;
+            let value = of_sky + seen_sun * irradiance.r * lit.dot(to_sun);
             seen += value;
             squares += value * value;
         }
@@ -630,6 +660,48 @@ fn wanted_errors_are_reached_and_true() {
     };
     let found = solve_with(&never, &scene, 6, None).unwrap();
     assert!(!found.is_reached && found.n_photons <= 2016);
+}
+
+/// The standard errors that a run tells are those by which independent runs differ: pooled over organs, plants and 40 runs the
+/// variances agree to 40 % (more than four standard errors); half as large errors would be a factor of 4.
+#[test]
+fn errors_are_those_by_which_runs_differ() {
+    let (materials, shapes) = leaves();
+    let scene = outdoors(shapes, materials, DAffine3::IDENTITY);
+    let how = Interception {
+        plants: [0, 0, 0, 1, 1, 1].map(Some).to_vec(),
+        ..settings(1600)
+    };
+    let cancel = CancelToken::default();
+    let runs: Vec<Lighting> = (0..40)
+        .map(|seed| {
+            let context = RenderContext {
+                seed,
+                cancel: &cancel,
+                progress: &|_| {},
+            };
+            let solved = how.solve(&scene, 6, &SensorField::default(), None, &context);
+            solved.unwrap()
+        })
+        .collect();
+    let ratio = |lights: &dyn Fn(&Lighting) -> Vec<OrganLight>| {
+        let (mut told, mut true_ones) = (0.0, 0.0);
+        for at in 0..lights(&runs[0]).len() {
+            let seen = runs.iter().map(|run| lights(run)[at]);
+            let powers: RunningStats = seen.clone().map(|light| light.absorbed.sum()).collect();
+            let mean = powers.mean();
+            let squares = seen.map(|light| (light.errors.absorbed / mean).powi(2));
+            told += squares.sum::<f64>() / runs.len() as f64;
+            true_ones += powers.variance() / (mean * mean);
+        }
+        told / true_ones
+    };
+    for ratio in [
+        ratio(&|run| run.organs.clone()),
+        ratio(&|run| run.plants.clone()),
+    ] {
+        assert!((1.0 / 1.4..1.4).contains(&ratio), "{ratio}");
+    }
 }
 
 /// The error of a plant is that of the sum over its organs, and what is no plant is in no total.

@@ -16,9 +16,17 @@ use std::sync::Arc;
 /// decoded again.
 #[derive(Debug, Default)]
 pub struct DecodedPictures {
-    /// By what cuts holes and the content of the file. Looked up only, never iterated into what is drawn.
-    by_content: HashMap<Coverage, HashMap<Vec<u8>, Arc<Image>>>,
+    known: Vec<Decoded>,
     n_decoded: u64,
+}
+
+/// A picture that was decoded.
+#[derive(Debug)]
+struct Decoded {
+    of: Coverage,
+    /// The content of its file.
+    file: Vec<u8>,
+    image: Arc<Image>,
 }
 
 impl DecodedPictures {
@@ -35,26 +43,29 @@ impl DecodedPictures {
         of: Coverage,
         memory: u64,
     ) -> Result<Arc<Image>, ImageFault> {
-        let known = self.by_content.entry(of).or_default();
-        if let Some(image) = known.get(bytes)
-            && image.bytes() as u64 <= memory
+        let mut known = self.known.iter();
+        let known = known.find(|known| known.of == of && known.file == bytes);
+        if let Some(known) = known
+            && known.image.bytes() as u64 <= memory
         {
-            return Ok(Arc::clone(image));
+            return Ok(Arc::clone(&known.image));
         }
         let image = Arc::new(Image::decode(bytes, memory)?.with_coverage(of));
         self.n_decoded += 1;
-        known.insert(bytes.to_vec(), Arc::clone(&image));
+        self.known.push(Decoded {
+            of,
+            file: bytes.to_vec(),
+            image: Arc::clone(&image),
+        });
         Ok(image)
     }
 
     /// Forgets all but these: memory is for what is drawn.
     fn keep(&mut self, used: &[Arc<Image>]) {
-        for known in self.by_content.values_mut() {
-            known.retain(|_, image| {
-                used.iter()
-                    .any(|used| Arc::ptr_eq(used, image) || used == image)
-            });
-        }
+        self.known.retain(|known| {
+            let is_it = |used: &Arc<Image>| Arc::ptr_eq(used, &known.image) || *used == known.image;
+            used.iter().any(is_it)
+        });
     }
 }
 

@@ -444,5 +444,21 @@ mod tests {
         let same = Material::mixed(&leaf_of(&texture, 0.4), &leaf_of(&texture, 0.8), 0.5);
         assert_eq!(same.pictures.as_ref().unwrap().layers.len(), 1);
         assert!((same.claim(true).max_channel() - 0.6).abs() < 1e-12);
+        // One that lies otherwise, is repeated otherwise or has another filter or cutoff is another one.
+        let other = |change: &dyn Fn(&mut Texture)| {
+            let mut other = texture.clone();
+            change(&mut other);
+            let mixed = Material::mixed(&leaf_of(&texture, 0.4), &leaf_of(&other, 0.8), 0.5);
+            let pictures = mixed.pictures.unwrap();
+            (pictures.layers.len(), pictures.holes.len())
+        };
+        assert_eq!(other(&|_| {}), (1, 1));
+        assert_eq!(
+            other(&|t| t.map = DAffine2::from_scale(DVec2::splat(2.0))),
+            (2, 2)
+        );
+        assert_eq!(other(&|t| t.wrap[1] = Wrap::Clamp), (2, 2));
+        assert_eq!(other(&|t| t.filter = Filter::Nearest), (2, 2));
+        assert_eq!(other(&|t| t.cutoff = Some(0.5)), (2, 2));
     }
 }

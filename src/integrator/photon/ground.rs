@@ -224,7 +224,7 @@ mod tests {
             turn <= (radius / distance).asin()
                 && w.z / w.truncate().length() <= height / (distance - radius)
         };
-        let n = 400;
+        let n = 1500;
         let grid = (0..n * n)
             .map(|i| DVec2::new(f64::from(i % n) + 0.5, f64::from(i / n) + 0.5) / f64::from(n));
         let counted = grid
@@ -237,7 +237,7 @@ mod tests {
             "{} {share}",
             sector.share()
         );
-        for u in grid.step_by(97) {
+        for u in grid.step_by(997) {
             let w = sector.direction(u);
             let inward = (w * DVec3::new(0.999, 1.0, 0.999)).normalize();
             assert!(holds(inward) && (w.length() - 1.0).abs() < 1e-12, "{w}");
