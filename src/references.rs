@@ -1,5 +1,13 @@
 //! The papers, books and standards that the code cites, one heading each. Documentation only.
 //!
+//! # AvcFile
+//! ISO/IEC 14496-15: Information technology, Coding of audio-visual objects, Part 15: Carriage of network abstraction layer
+//! (NAL) unit structured video in the ISO base media file format.
+//!
+//! # Bayer1973
+//! B. E. Bayer: An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures. IEEE International Conference on
+//! Communications, 1973.
+//!
 //! # Benthin2024
 //! C. Benthin, D. Meister, J. Barczak, R. Mehalwal, J. Tsakok, A. Kensler: H-PLOC: Hierarchical Parallel Locally-Ordered
 //! Clustering for Bounding Volume Hierarchy Construction. Proceedings of the ACM on Computer Graphics and Interactive
@@ -12,6 +20,10 @@
 //!
 //! # BornWolf1999
 //! M. Born, E. Wolf: Principles of Optics. 7th edition. Cambridge University Press, 1999.
+//!
+//! # BT709
+//! Recommendation ITU-R BT.709-6: Parameter values for the HDTV standards for production and international programme
+//! exchange, 2015. <https://www.itu.int/rec/R-REC-BT.709>
 //!
 //! # Burley2012
 //! B. Burley: Physically-Based Shading at Disney. SIGGRAPH 2012 course notes.
@@ -59,6 +71,9 @@
 //! # FNV
 //! G. Fowler, L. C. Noll, K.-P. Vo: FNV hash. <http://www.isthe.com/chongo/tech/comp/fnv/>
 //!
+//! # H264
+//! Recommendation ITU-T H.264: Advanced video coding for generic audiovisual services. <https://www.itu.int/rec/T-REC-H.264>
+//!
 //! # Haines2019
 //! E. Haines, J. Günther, T. Akenine-Möller: Precision Improvements for Ray/Sphere Intersection. Ray Tracing Gems, chapter 7,
 //! Apress, 2019. <https://doi.org/10.1007/978-1-4842-4427-2_7>
@@ -93,6 +108,9 @@
 //! # HosekWilkie2012
 //! L. Hosek, A. Wilkie: An Analytic Model for Full Spectral Sky-Dome Radiance. ACM Transactions on Graphics 31(4), 2012.
 //! <https://doi.org/10.1145/2185520.2185591>
+//!
+//! # Isobmff
+//! ISO/IEC 14496-12: Information technology, Coding of audio-visual objects, Part 12: ISO base media file format.
 //!
 //! # Ize2013
 //! T. Ize: Robust BVH Ray Traversal. Journal of Computer Graphics Techniques 2(2), 2013.
@@ -193,6 +211,10 @@
 //! G. L. Steele, J. L. White: How to Print Floating-Point Numbers Accurately. Proceedings of PLDI, 1990.
 //! <https://doi.org/10.1145/93542.93559>
 //!
+//! # Steffen1990
+//! M. Steffen: A Simple Method for Monotonic Interpolation in One Dimension. Astronomy and Astrophysics 239, 1990, 443-450.
+//! <https://ui.adsabs.harvard.edu/abs/1990A%26A...239..443S>
+//!
 //! # Urena2013
 //! C. Ureña, M. Fajardo, A. King: An Area-Preserving Parametrization for Spherical Rectangles. Computer Graphics Forum 32(4),
 //! 2013. <https://doi.org/10.1111/cgf.12151>
@@ -226,6 +248,9 @@
 //!
 //! # WardHeckbert1992
 //! G. Ward, P. Heckbert: Irradiance Gradients. Eurographics Workshop on Rendering, 1992.
+//!
+//! # WebpContainer
+//! WebP Container Specification. <https://developers.google.com/speed/webp/docs/riff_container>
 //!
 //! # Welford1962
 //! B. Welford: Note on a Method for Calculating Corrected Sums of Squares and Products. Technometrics 4(3), 1962.

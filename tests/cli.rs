@@ -193,11 +193,17 @@ fn an_output_that_cannot_be_written_is_told_before_the_work() {
         let message = bench.fail(&format!("render m.rgg -o {output} --steps 1000000"), code);
         assert!(message.contains(word), "{output}: {message}");
     }
-    assert!(
-        bench
-            .fail("fly m.rgg --orbit -o m.mp4", 2)
-            .contains("not in this version")
-    );
+    for (output, code, word) in [
+        ("m.avi", 2, ".mp4"),
+        ("no/m.mp4", 3, "no such"),
+        ("thesis.png", 3, "not replaced"),
+    ] {
+        let message = bench.fail(
+            &format!("fly m.rgg --orbit -o {output} --steps 1000000"),
+            code,
+        );
+        assert!(message.contains(word), "{output}: {message}");
+    }
     assert!(bench.fail("fly m.rgg -o f", 2).contains("--orbit"));
     assert_eq!(
         text(&bytes(&bench.path("thesis.png"))),

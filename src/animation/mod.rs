@@ -1,4 +1,4 @@
-//! Films: which camera sees which frame.
+//! Films: what each frame shows, and how frames become one file.
 //!
 //! A frame is a function of the model, the options and its number, and of nothing else: any part of a film can be made
 //! alone, in any order, again, and is the same part.
@@ -14,6 +14,17 @@
 //! assert!(flight.view(1).eye.distance(DVec3::Y) < 1e-12);
 //! ```
 
+mod bits;
+pub mod film;
+pub mod flicker;
 pub mod flight;
+mod gif;
+pub mod h264;
+pub mod key;
+pub mod mp4;
+pub mod spline;
+mod webp;
 
-pub use flight::{Flight, frame_name};
+pub use film::{FilmError, FilmFormat, FilmShape, film};
+pub use flight::{Flight, Moment, Speed, frame_name};
+pub use key::{KeyFrame, KeyFrames, SunPlace};

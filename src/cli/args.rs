@@ -33,7 +33,7 @@ pub enum Action {
     Render(RenderArgs),
     /// Make the picture, and make it again whenever an input changes
     Watch(WatchArgs),
-    /// Make the frames of a film: the camera moves
+    /// Make a film: the camera moves, the model grows, or both
     Fly(FlyArgs),
     /// Check the light transport against what is known on paper; print each number
     Validate(ValidateArgs),
@@ -206,20 +206,23 @@ pub struct WatchArgs {
 /// `fly`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  understory fly forest.rgg --orbit -o frames\n  \
-                        understory fly forest.rgg --orbit --flight-frames 240 --frames 0..6 -o frames\n\n\
-                        Frames already in the folder that were made from the same model and options are kept,\n\
-                        so a flight that was stopped goes on where it was."
+    after_help = "Examples:\n  understory fly forest.rgg --orbit -o forest.mp4\n  \
+                        understory fly plant.rgg --grow 0..30 --flight-frames 250 -o growth.mp4\n  \
+                        understory fly forest.rgg --key 'time=0 eye=0,-30,9; time=8 eye=0,30,4' -o flight.mp4\n  \
+                        understory fly forest.rgg --orbit --flight-frames 240 --frames 0..60 -o frames\n\n\
+                        The frames of FLIGHT.mp4 are kept in the folder FLIGHT.mp4.frames: a flight that was stopped goes on\n\
+                        where it was, parts (--frames) can be made one by one or by several machines, and the film is written\n\
+                        once all its frames are there. The folder can be removed then."
 )]
 pub struct FlyArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
-    /// The folder for frame-000000.png and so on; made if it is missing
+    /// The film: .mp4 (H.264), .gif, .png or .apng (animated PNG), .webp; a path without a suffix is a folder for frame-000000.png and so on
     #[arg(
         short,
         long,
-        value_name = "FOLDER",
+        value_name = "FILE",
         required_unless_present = "explain_options"
     )]
     pub output: Option<PathBuf>,

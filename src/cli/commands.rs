@@ -1,8 +1,6 @@
 //! The commands that run once.
 
-use super::args::{
-    CheckArgs, DeriveArgs, FlyArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs,
-};
+use super::args::{CheckArgs, DeriveArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
@@ -17,7 +15,7 @@ use crate::pipeline::solving::SolutionFiles;
 use crate::pipeline::store::{CsvTarget, JsonTarget, PictureTarget, SolutionTarget};
 use crate::pipeline::studio::{Keep, Run, Studio};
 use crate::pipeline::viewpoint;
-use crate::pipeline::world::{Entry, World};
+use crate::pipeline::world::World;
 use std::path::Path;
 
 /// Keys by which an earlier file of `derive --json` is known.
@@ -112,40 +110,6 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     })
 }
 
-/// `fly`: the frames of a film.
-pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
-    let path = &args.model.model;
-    let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(path, Command::Fly),
-    };
-    check_folder(&shell.world, output)?;
-    let report = shell.report_target(args.report.as_deref())?;
-    let mut studio = studio(shell, &args.model)?;
-    studio.solution_files = solution_files(shell, &args.light, output)?;
-    run(shell, &mut studio, |studio, run| {
-        studio.solution_files.check(&run.options)?;
-        if !run.options.orbit.value {
-            let message = "a flight needs a path: `--orbit` flies once round the model";
-            return Err(Failure::Usage(message.into()));
-        }
-        check_wishes(&shell.world, run)?;
-        open_folder(&shell.world, output)?;
-        let made = shell.making(Partial::Drop).film(studio, run, output)?;
-        shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
-        let kept = match made.n_kept {
-            0 => String::new(),
-            n => format!(", {n} kept"),
-        };
-        let (folder, seconds) = (output.display(), studio.seconds.summary());
-        shell.terminal.note(&format!(
-            "{folder}: {} frames made{kept} ({seconds})",
-            made.n_made
-        ));
-        finished(&made)
-    })
-}
-
 /// `light`: the light on each organ.
 pub(super) fn light(shell: &Shell, args: &LightArgs) -> Result<(), Failure> {
     let path = &args.model.model;
@@ -180,13 +144,13 @@ pub(super) fn light(shell: &Shell, args: &LightArgs) -> Result<(), Failure> {
 pub(super) fn run<T: Send>(
     shell: &Shell,
     studio: &mut Studio<'_>,
-    work: impl FnOnce(&mut Studio<'_>, &Run) -> Result<T, Failure> + Send,
+    work: impl FnOnce(&mut Studio<'_>, &mut Run) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
     let opened = studio.read(&shell.flags)?;
     let options = opened.options.clone();
     shell.on_threads(&options, || {
-        let run = studio.check(opened)?;
-        work(studio, &run)
+        let mut run = studio.check(opened)?;
+        work(studio, &mut run)
     })
 }
 
@@ -214,7 +178,7 @@ pub(super) fn check_wishes(world: &dyn World, run: &Run) -> Result<(), Failure> 
     viewpoint::check(&run.sources, &run.options)
 }
 
-fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure> {
+pub(super) fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure> {
     let path = model.model.clone();
     let mut studio = Studio::new(&shell.world, shell.terminal.clone(), path, Keep::Last);
     studio.access = model.access()?;
@@ -223,7 +187,7 @@ fn studio<'s>(shell: &'s Shell, model: &ModelArg) -> Result<Studio<'s>, Failure>
 }
 
 /// Where the light that all cameras share comes from and goes to.
-fn solution_files(
+pub(super) fn solution_files(
     shell: &Shell,
     args: &SolutionArgs,
     output: &Path,
@@ -240,34 +204,10 @@ fn solution_files(
     })
 }
 
-fn finished(made: &Made) -> Result<(), Failure> {
+pub(super) fn finished(made: &Made) -> Result<(), Failure> {
     if made.is_whole {
         Ok(())
     } else {
         Err(Failure::Stopped)
     }
-}
-
-/// Refuses what cannot be the folder of a film, before any work is done.
-fn check_folder(world: &dyn World, path: &Path) -> Result<(), Failure> {
-    match (world.entry(path), path.extension()) {
-        (Entry::Folder, _) | (Entry::Missing, None) => Ok(()),
-        (_, Some(suffix)) => Err(Failure::Usage(format!(
-            "films as one `.{}` file are not in this version: name a folder for the frames (a path without a suffix)",
-            suffix.to_string_lossy()
-        ))),
-        (Entry::File | Entry::Device, None) => Err(Failure::World(format!(
-            "cannot write into `{}`: it is a file",
-            path.display()
-        ))),
-    }
-}
-
-fn open_folder(world: &dyn World, path: &Path) -> Result<(), Failure> {
-    world
-        .create_folder(path)
-        .map_err(|error| Failure::file("make folder", path, &error))?;
-    world
-        .try_folder(path)
-        .map_err(|error| Failure::file("write files into", path, &error))
 }

@@ -2,6 +2,7 @@
 
 pub mod args;
 mod commands;
+mod flying;
 pub mod outcome;
 mod shell;
 mod talking;
@@ -53,7 +54,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Derive(args) => commands::derive(&shell, args),
         Action::Render(args) => commands::render(&shell, args),
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
-        Action::Fly(args) => commands::fly(&shell, args),
+        Action::Fly(args) => flying::fly(&shell, args),
         Action::Validate(args) => validating::validate(&shell, args),
         Action::Light(args) => commands::light(&shell, args),
         Action::Lsp(_) => Ok(()),

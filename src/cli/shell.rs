@@ -126,7 +126,8 @@ impl Shell {
         )
         .solved(made.solution)
         .warning(&made.warnings)
-        .working(work);
+        .working(work)
+        .flown(made.n_made, made.n_kept, made.flicker);
         target.write(&self.world, &report)
     }
 

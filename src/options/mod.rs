@@ -16,6 +16,7 @@
 //! ```
 
 pub mod explain;
+pub mod flying;
 pub mod lighting;
 pub mod preset;
 pub mod setting;

@@ -12,10 +12,11 @@
 use super::Options;
 use super::setting::{Origin, SetError};
 use super::table::{OptionRow, Section, TABLE};
+use crate::animation::key::{KeyFrame, KeyFrames, no_time};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Span, nearest};
 use std::ops::Range;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 impl Options {
     /// Takes over the values of `text`, the content of `file`.
@@ -58,12 +59,81 @@ impl Reader<'_> {
                 self.heading(name, place, inner);
                 continue;
             }
+            if let (Section::Fly, "key", DeValue::Array(frames)) = (section, name, value.get_ref())
+            {
+                self.key_frames(place, frames);
+                continue;
+            }
             match TABLE.iter().find(|row| row.key == name) {
                 Some(row) if row.section == section => self.value(row, value),
                 Some(row) => self.misplaced(row, section, place),
                 None => self.unknown(name, place),
             }
         }
+    }
+
+    /// Reads the tables `[[fly.key]]`.
+    fn key_frames(&mut self, heading: Span, tables: &DeArray<'_>) {
+        let places: Vec<Span> = tables.iter().map(|item| self.span(item.span())).collect();
+        let mut read = Vec::new();
+        for (i, (item, place)) in tables.iter().zip(&places).enumerate() {
+            read.push(match item.get_ref() {
+                DeValue::Table(table) => self.key_frame(i, *place, table),
+                other => {
+                    let kind = other.type_str();
+                    self.key_fault(
+                        *place,
+                        format!("a key frame is a table `[[fly.key]]`, not a value of type {kind}"),
+                    );
+                    None
+                }
+            });
+        }
+        // What is wrong with one of them hides what is wrong with them together.
+        let Some(frames) = read.into_iter().collect() else {
+            return;
+        };
+        match KeyFrames::new(frames) {
+            Ok(keys) => {
+                let origin = Origin::Sidecar(places.first().copied().unwrap_or(heading));
+                self.options
+                    .set("key", &keys.to_string(), origin)
+                    .expect("invariant: key frames are read as they are written");
+            }
+            Err((i, why)) => self.key_fault(places.get(i).copied().unwrap_or(heading), why),
+        }
+    }
+
+    /// A key frame (counted from 0), if nothing is wrong with it.
+    fn key_frame(&mut self, i: usize, place: Span, table: &DeTable<'_>) -> Option<KeyFrame> {
+        let mut frame = KeyFrame::default();
+        let mut is_good = true;
+        for (key, value) in table {
+            let (name, place) = (key.get_ref(), self.span(value.span()));
+            let set = match plain(value.get_ref()) {
+                Some(text) => frame.set(name, &text),
+                None => {
+                    let kind = value.get_ref().type_str();
+                    Err(format!(
+                        "`{name}` of a key frame cannot be a value of type {kind}"
+                    ))
+                }
+            };
+            if let Err(why) = set {
+                is_good = false;
+                self.key_fault(place, why);
+            }
+        }
+        if table.get("time").is_none() {
+            is_good = false;
+            self.key_fault(place, no_time(i));
+        }
+        is_good.then_some(frame)
+    }
+
+    fn key_fault(&mut self, place: Span, message: String) {
+        self.found
+            .push(Diagnostic::error("key-frame", place, message));
     }
 
     fn heading(&mut self, name: &str, place: Span, table: &DeTable<'_>) {
@@ -200,6 +270,48 @@ mod tests {
             "9: option `size` cannot be a value of type datetime ()",
         ];
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn key_frames_are_tables_and_their_mistakes_have_lines() {
+        let (options, found) =
+            read("[[fly.key]]\ntime = 0\neye = [0, -9, 2]\n[[fly.key]]\ntime = 1.5\nstep = 3\n");
+        assert_eq!(found, Vec::<String>::new());
+        assert_eq!(options.key.text, "time=0 eye=0,-9,2; time=1.5 step=3");
+        let (_, found) = read(
+            "[[fly.key]]\ntime = 0\ntagret = [1, 2, 3]\n[[fly.key]]\neye = [1, nan, 2]\n[fly]\nkey = 3\n",
+        );
+        assert!(
+            found
+                .iter()
+                .any(|line| line
+                    .starts_with("3: a key frame has no `tagret`: did you mean `target`?")),
+            "{found:?}"
+        );
+        assert!(
+            found
+                .iter()
+                .any(|line| line.starts_with("5: `eye` must be X,Y,Z")),
+            "{found:?}"
+        );
+        assert!(
+            found
+                .iter()
+                .any(|line| line.contains("key frame 2 has no `time`")),
+            "{found:?}"
+        );
+        let (_, found) = read("[[fly.key]]\ntime = 2\n[[fly.key]]\ntime = 1\n");
+        assert!(
+            found[0].starts_with("3: key frame 2 is at 1 s, not after"),
+            "{found:?}"
+        );
+        let (_, found) = read("[[fly.key]]\ntime = 2\n");
+        assert!(
+            found[0].starts_with("1: one key frame is no flight"),
+            "{found:?}"
+        );
+        let (_, found) = read("[fly]\nkey = []\n");
+        assert!(found[0].contains("no key frames"), "{found:?}");
     }
 
     #[test]

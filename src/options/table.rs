@@ -1,5 +1,6 @@
 //! The table of options: one row each.
 
+use super::flying::{FrameCount, FrameFormat, FrameRate};
 use super::lighting::{Fraction, PlotSize};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
@@ -7,6 +8,7 @@ use super::value::{
     Area, Brightness, Bytes, Daylight, GatherRays, GridSize, Ground, PhotonCount, Quality,
     Renderer, Seconds, Size, Threads, Turbidity,
 };
+use crate::animation::KeyFrames;
 use crate::diag::nearest;
 use crate::light::sun_position::{Moment, Place};
 use crate::math::angle::Angle;
@@ -280,8 +282,22 @@ options! {
 
     /// Flies once round the middle of the picture
     orbit: bool = "false", "orbit", "", Fly, Flight, &[Fly];
-    /// How many frames the whole flight has, whichever of them are made
-    flight_frames: NonZeroU32 = "120", "flight-frames", "N", Fly, Flight, &[Fly];
+    /// Turns the model once before the camera: flies round it, and takes the sun along
+    turntable: bool = "false", "turntable", "", Fly, Flight, &[Fly];
+    /// Flies through key frames: `time=0 eye=0,-9,2 target=0,0,1; time=4 eye=5,-7,3`, each with any of `eye`, `target`, `fov`, `step`, `sun`; in the file one table `[[fly.key]]` for each
+    key: Option<KeyFrames> = "none", "key", "KEYS", Fly, Flight, &[Fly];
+    /// Flies through the key frames at an even speed; their times then only order them
+    even_speed: bool = "false", "even-speed", "", Fly, Flight, &[Fly];
+    /// The model grows from step `A` in the first frame to step `B` in the last
+    grow: Option<Range<u32>> = "none", "grow", "A..B", Fly, Flight, &[Fly];
+    /// How many frames the whole flight has, whichever of them are made; `auto`: 120, with key frames as many as their times take
+    flight_frames: Option<FrameCount> = "auto", "flight-frames", "N", Fly, Flight, &[Fly];
+    /// Frames per second of the film
+    fps: FrameRate = "25", "fps", "N", Fly, Flight, &[Fly];
+    /// What single frames in a folder are: `png`, or `exr` with linear radiance
+    frame_format: FrameFormat = "png", "frame-format", "NAME", Fly, Flight, &[Fly];
+    /// Pairs of neighbouring frames that are rendered again with other random numbers to measure how much the film flickers
+    flicker: u32 = "2", "flicker", "N", Fly, Machine, &[Fly];
     /// The frames to make, the last one not included; `auto`: the whole flight
     frames: Option<Range<u32>> = "auto", "frames", "A..B", Fly, Machine, &[Fly];
 

@@ -4,6 +4,7 @@ use super::content_hash::ContentHash;
 use super::lighting::FoundLight;
 use super::studio::Run;
 use super::world::World;
+use crate::animation::flicker::Flicker;
 use crate::diag::SourceMap;
 use crate::options::{Options, explain};
 use serde::Serialize;
@@ -209,6 +210,10 @@ pub struct Report<'a> {
     work: Work,
     /// What the pictures lack without showing it.
     warnings: &'a [&'static str],
+    /// How much a film flickers.
+    flicker: Option<Flicker>,
+    /// Frames that were made, and frames that were there already.
+    frames: Option<(u32, u32)>,
 }
 
 /// Keys by which an earlier report of `light` is known when it is to be replaced.
@@ -328,6 +333,8 @@ impl<'a> Report<'a> {
             image_hash: image.to_string(),
             work: Work::default(),
             warnings: &[],
+            flicker: None,
+            frames: None,
         }
     }
 
@@ -339,6 +346,16 @@ impl<'a> Report<'a> {
             solves: u32::from(facts.origin == Some(SolutionOrigin::Made)),
             photons_emitted: facts.photons.map(|(emitted, _)| emitted),
             photons_stored: facts.photons.map(|(_, stored)| stored),
+            ..self
+        }
+    }
+
+    /// The same report, of a film: frames made, frames kept, and how much it flickers.
+    #[must_use]
+    pub fn flown(self, made: u32, kept: u32, flicker: Option<Flicker>) -> Self {
+        Self {
+            frames: Some((made, kept)),
+            flicker,
             ..self
         }
     }

@@ -193,7 +193,7 @@ impl CsvTarget {
 }
 
 /// Whether a file may be put at `path`: its folder takes files, and what is there is nothing, empty, or `is_own`.
-fn may_write(
+pub(super) fn may_write(
     world: &dyn World,
     path: &Path,
     kind: &str,

@@ -119,7 +119,8 @@ impl Run {
         let entries = self.options.entries();
         let set = entries
             .iter()
-            .filter(|entry| entry.row.stage != Stage::Machine && entry.origin != Origin::Default);
+            .filter(|entry| !matches!(entry.row.stage, Stage::Machine | Stage::Flight))
+            .filter(|entry| entry.origin != Origin::Default);
         let options: Vec<String> = set
             .map(|entry| format!("{}={}", entry.row.key, entry.text))
             .collect();

@@ -10,11 +10,24 @@ use crate::options::{Options, Origin};
 use crate::scene::Scene;
 use glam::DVec3;
 
+/// What there is to see before there is a scene.
+const NOTHING: Subject<'static> = Subject {
+    bounds: Bounds3::EMPTY,
+    reach: &|_| 0.0,
+};
+
 /// The view of the options; what they leave open frames the scene.
 pub fn of_scene(options: &Options, scene: &Scene) -> View {
     let reach = &|normal| scene.reach(normal);
     let bounds = scene.bounds();
     view(options, &Subject { bounds, reach })
+}
+
+/// The view, if no scene is needed to know it: the options say where the camera stands and what it looks at, or somebody else
+/// does (`is_said`).
+pub fn decided(options: &Options, is_said: bool) -> Option<View> {
+    let is_decided = options.eye.value.is_some() && options.target.value.is_some();
+    (is_decided || is_said).then(|| view(options, &NOTHING))
 }
 
 fn view(options: &Options, subject: &Subject<'_>) -> View {
@@ -69,16 +82,9 @@ pub fn camera(sources: &Sources, options: &Options, view: &View) -> Result<Camer
 /// # Errors
 /// As [`camera`].
 pub fn check(sources: &Sources, options: &Options) -> Result<(), Failure> {
-    let is_decided = options.eye.value.is_some() && options.target.value.is_some();
-    let nothing = Subject {
-        bounds: Bounds3::EMPTY,
-        reach: &|_| 0.0,
-    };
-    let view = view(options, &nothing);
-    if is_decided {
-        camera(sources, options, &view).map(drop)
-    } else {
-        Ok(())
+    match decided(options, false) {
+        Some(view) => camera(sources, options, &view).map(drop),
+        None => Ok(()),
     }
 }
 

@@ -1,0 +1,477 @@
+//! From a model to a film: which frames are missing, the scenes they need, the frames, the film.
+//!
+//! Frames that show the same scene share it and the light in it. The random numbers of a pixel come from the seed and the
+//! pixel, not from the frame, and those of photon mapping lie on the surfaces: where nothing moves, nothing changes.
+
+use super::audience::Audience;
+use super::content_hash::ContentHash;
+use super::course;
+use super::exposing;
+use super::failure::Failure;
+use super::making::{Made, Making};
+use super::reel::Reel;
+use super::report::{Effort, Phase, SolutionFacts};
+use super::solving::Solved;
+use super::studio::{Run, Studio};
+use super::viewing::{Prepared, Viewing};
+use super::viewpoint;
+use crate::animation::flicker::{self, Flicker, FlickerMeter};
+use crate::animation::{FilmShape, Flight, Moment};
+use crate::camera::Camera;
+use crate::diag::{Diagnostics, SourceMap};
+use crate::film::LinearImage;
+use crate::image::{Format, Pixels};
+use crate::options::{Options, Origin};
+use crate::scene::Scene;
+use std::sync::Arc;
+
+/// Added to the seed of frames that are rendered again to measure flicker.
+const OTHER_SEED: i64 = 0x666c_6963_6b65_72;
+
+/// A frame to be.
+struct Job {
+    frame: u32,
+    moment: Moment,
+    camera: Camera,
+    /// Equal for frames that show the same scene.
+    scene: ContentHash,
+    /// All that the frame is made from.
+    key: String,
+}
+
+/// A scene with the light that all cameras share.
+struct Set {
+    key: ContentHash,
+    scene: Arc<Scene>,
+    solved: Solved,
+}
+
+/// A film under way.
+struct Shooting<'a, 'w> {
+    making: Making<'a>,
+    studio: &'a mut Studio<'w>,
+    run: &'a mut Run,
+    /// The options as the user gave them.
+    base: Options,
+    set: Option<Set>,
+    done: Done,
+}
+
+/// What has become of the frames so far.
+#[derive(Default)]
+struct Done {
+    hashes: Vec<(u32, ContentHash)>,
+    effort: Option<Effort>,
+    n_kept: u32,
+    n_made: u32,
+    warnings: Option<Vec<&'static str>>,
+    solution: SolutionFacts,
+}
+
+impl Making<'_> {
+    /// Makes the frames that the options ask for, and the film once all its frames are there. Frames that are there already
+    /// and were made from the same are kept. Stopped early, what is finished stays.
+    ///
+    /// # Errors
+    /// If any stage fails.
+    pub fn film(
+        &self,
+        studio: &mut Studio<'_>,
+        run: &mut Run,
+        reel: &Reel,
+    ) -> Result<Made, Failure> {
+        let shape = course::shape(&run.options);
+        let mut shooting = Shooting {
+            making: *self,
+            studio,
+            base: run.options.clone(),
+            run,
+            set: None,
+            done: Done::default(),
+        };
+        let flight = shooting.flight()?;
+        let jobs = shooting.jobs(&flight)?;
+        let wanted = shooting.base.frames.value.clone().unwrap_or(flight.all());
+        let (mut missing, mut is_elsewhere_whole) = (Vec::new(), true);
+        for job in &jobs {
+            let kept = reel.kept(self.world, job.frame, &job.key)?;
+            match (kept, wanted.contains(&job.frame)) {
+                (Some(hash), true) => shooting.done.keep(job.frame, hash),
+                (None, true) => missing.push(job),
+                (None, false) => is_elsewhere_whole = false,
+                (Some(_), false) => {}
+            }
+        }
+        let exposure = match missing[..] {
+            [] => None,
+            _ => Some(shooting.exposure(&jobs[flight.brightest() as usize])?),
+        };
+        if let Some(exposure) = exposure
+            && !shooting.shoot(&missing, reel, exposure)?
+        {
+            return Ok(shooting.end(false, None, None));
+        }
+        let flicker = match exposure {
+            Some(exposure) => shooting.flicker(&jobs, wanted, reel, exposure)?,
+            None => None,
+        };
+        let film = if is_elsewhere_whole && reel.film().is_some() {
+            shooting.assemble(reel, shape)?
+        } else {
+            None
+        };
+        Ok(shooting.end(true, flicker, film))
+    }
+}
+
+impl Shooting<'_, '_> {
+    /// The flight, whose view is that of the largest model unless the options decide it.
+    fn flight(&mut self) -> Result<Flight, Failure> {
+        if let Some(view) = course::decided(&self.base) {
+            return Ok(course::flight(&self.base, view));
+        }
+        self.set_moment(course::last_step(&self.base), None)?;
+        let scene = self.studio.build(self.run, self.making.cancel)?;
+        let view = viewpoint::of_scene(&self.base, &scene);
+        Ok(course::flight(&self.base, view))
+    }
+
+    /// Sets the options to those of one moment.
+    fn set_moment(
+        &mut self,
+        step: Option<f64>,
+        sun: Option<crate::animation::SunPlace>,
+    ) -> Result<(), Failure> {
+        let mut options = self.base.clone();
+        let mut set = |key: &str, text: String| {
+            options
+                .set(key, &text, Origin::Flag)
+                .map_err(|error| Failure::Usage(error.to_string()))
+        };
+        if let Some(step) = step {
+            set("steps", step.floor().to_string())?;
+        }
+        if let Some(sun) = sun {
+            set("sun", format!("{},{}", sun.azimuth, sun.elevation))?;
+            set("date", "none".into())?;
+        }
+        self.run.options = options;
+        Ok(())
+    }
+
+    /// All frames of the flight with all that each is made from.
+    fn jobs(&mut self, flight: &Flight) -> Result<Vec<Job>, Failure> {
+        let cameras = course::cameras(self.run, flight)?;
+        let panorama = self.studio.panorama(self.run)?;
+        let panorama = ContentHash::of(panorama.as_ref().map(|(_, file)| &file[..]));
+        // All frames have the exposure of this one.
+        let leader = format!(
+            "{:?}",
+            cameras.get(flight.brightest() as usize).map(|(m, _)| m)
+        );
+        let mut jobs = Vec::with_capacity(cameras.len());
+        for (frame, (moment, camera)) in (0..).zip(cameras) {
+            self.set_moment(moment.step, moment.sun)?;
+            let key = self
+                .run
+                .picture_key()
+                .with(&panorama.to_string())
+                .with(&leader)
+                .with(&format!("{moment:?}"));
+            jobs.push(Job {
+                frame,
+                moment,
+                camera,
+                scene: self.run.scene_key(),
+                key: key.to_string(),
+            });
+        }
+        Ok(jobs)
+    }
+
+    /// Builds the scene of a frame and solves its light, unless both are there.
+    fn enter(&mut self, job: &Job) -> Result<(), Failure> {
+        if self.set.as_ref().is_some_and(|set| set.key == job.scene) {
+            return Ok(());
+        }
+        self.set = None;
+        self.set_moment(job.moment.step, job.moment.sun)?;
+        let scene = self.studio.build(self.run, self.making.cancel)?;
+        let viewing = self.making.viewing(self.run);
+        if self.done.warnings.is_none() {
+            self.done.warnings = Some(self.making.warn(self.run, &viewing, &scene));
+        }
+        self.making.audience.begins("preparing");
+        let solved = self.studio.solve(self.run, &scene, &viewing)?;
+        self.done.solution = solved.facts;
+        self.set = Some(Set {
+            key: job.scene,
+            scene,
+            solved,
+        });
+        Ok(())
+    }
+
+    /// Looks at the scene of a frame, with these options.
+    fn look<T>(
+        &mut self,
+        job: &Job,
+        options: &Options,
+        work: impl FnOnce(&mut Self, &Scene, &Prepared<'_>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        self.enter(job)?;
+        let Some(set) = &self.set else {
+            return Err(Failure::Stopped);
+        };
+        let (scene, solution) = (set.scene.clone(), set.solved.solution.clone());
+        let (world, making) = (self.making.world, self.making);
+        let viewing = Viewing {
+            options,
+            ..making.viewing(self.run)
+        };
+        let prepare = || viewing.prepare(&scene, &solution);
+        let prepared = self.studio.seconds.time(world, Phase::Prepare, prepare)?;
+        work(self, &scene, &prepared)
+    }
+
+    /// The exposure of all frames: what suits this one.
+    fn exposure(&mut self, job: &Job) -> Result<f64, Failure> {
+        if let Some(stops) = self.base.exposure.value {
+            return Ok(exposing::factor(stops));
+        }
+        let options = self.base.clone();
+        self.look(job, &options, |this, scene, prepared| {
+            let viewing = Viewing {
+                options: &options,
+                ..this.making.viewing(this.run)
+            };
+            let world = this.making.world;
+            let decide = || viewing.exposure(scene, prepared, &job.camera);
+            this.studio.seconds.time(world, Phase::Prepare, decide)
+        })
+    }
+
+    /// Makes frames, those of each scene together; whether it got to the end.
+    fn shoot(&mut self, missing: &[&Job], reel: &Reel, exposure: f64) -> Result<bool, Failure> {
+        let n_frames = missing.len() as u64;
+        let mut index = 0;
+        for group in missing.chunk_by(|a, b| a.scene == b.scene) {
+            let Some(first) = group.first() else { continue };
+            let options = self.base.clone();
+            let is_whole = self.look(first, &options, |this, _, prepared| {
+                this.making.audience.begins("flying");
+                for job in group {
+                    let progress = FrameAudience {
+                        audience: this.making.audience,
+                        index,
+                        n_frames,
+                    };
+                    index += 1;
+                    if !this.shoot_one(job, prepared, &progress, reel, exposure)? {
+                        return Ok(false);
+                    }
+                }
+                Ok(true)
+            });
+            match is_whole {
+                Ok(true) => {}
+                Ok(false) | Err(Failure::Stopped) => {
+                    self.making.audience.ends();
+                    return Ok(false);
+                }
+                Err(failure) => return Err(failure),
+            }
+        }
+        self.making.audience.ends();
+        Ok(true)
+    }
+
+    /// Makes one frame and writes it; whether it has all its samples.
+    fn shoot_one(
+        &mut self,
+        job: &Job,
+        prepared: &Prepared<'_>,
+        progress: &FrameAudience<'_>,
+        reel: &Reel,
+        exposure: f64,
+    ) -> Result<bool, Failure> {
+        let world = self.making.world;
+        let viewing = Viewing {
+            audience: progress,
+            ..self.making.viewing(self.run)
+        };
+        let shoot = || viewing.shoot(prepared, &job.camera);
+        let shot = self.studio.seconds.time(world, Phase::Render, shoot)?;
+        if !shot.is_whole {
+            return Ok(false);
+        }
+        let run = &*self.run;
+        let hash = self.studio.seconds.time(world, Phase::Write, || {
+            let picture = exposing::develop(&shot.image, reel.frame_format(), exposure);
+            let mut texts = run.texts();
+            texts.push(("Moment", describe(&job.moment)));
+            reel.put(world, job.frame, &job.key, &picture, texts)
+        })?;
+        self.done.make(job.frame, hash, shot.effort);
+        Ok(true)
+    }
+
+    /// Renders pairs of frames again with other random numbers and compares.
+    fn flicker(
+        &mut self,
+        jobs: &[Job],
+        frames: std::ops::Range<u32>,
+        reel: &Reel,
+        exposure: f64,
+    ) -> Result<Option<Flicker>, Failure> {
+        let pairs = flicker::pairs(frames.end - frames.start, self.base.flicker.value);
+        let mut meter = FlickerMeter::default();
+        for (index, first) in (0..).zip(&pairs) {
+            let world = self.making.world;
+            let at = frames.start + first;
+            let pair = [&jobs[at as usize], &jobs[at as usize + 1]];
+            let mut film = Vec::new();
+            let mut again = Vec::new();
+            for (second, job) in (0..).zip(pair) {
+                film.push(reel.shown(world, job.frame, exposure)?);
+                let index = 2 * index + second;
+                let n_frames = 2 * pairs.len() as u64;
+                let image = match self.again(job, index, n_frames) {
+                    Ok(Some(image)) => image,
+                    // The film itself is there.
+                    Ok(None) | Err(Failure::Stopped) => return Ok(None),
+                    Err(failure) => return Err(failure),
+                };
+                let picture = exposing::develop(&image, Format::Png, exposure);
+                match picture.pixels {
+                    Pixels::Srgb(bytes) => again.push(bytes),
+                    Pixels::Linear(_) => unreachable!("invariant: PNG is sRGB"),
+                }
+            }
+            meter.add([&film[0], &film[1]], [&again[0], &again[1]]);
+        }
+        self.making.audience.ends();
+        Ok(meter.result())
+    }
+
+    /// A frame made with other random numbers; `None` if it was stopped.
+    fn again(
+        &mut self,
+        job: &Job,
+        index: u64,
+        n_frames: u64,
+    ) -> Result<Option<LinearImage>, Failure> {
+        let mut options = self.base.clone();
+        let seed = options.seed.value.wrapping_add(OTHER_SEED).to_string();
+        options
+            .set("seed", &seed, Origin::Flag)
+            .map_err(|error| Failure::Usage(error.to_string()))?;
+        let base = self.base.clone();
+        self.look(job, &base, |this, _, prepared| {
+            this.making.audience.begins("measuring flicker");
+            let progress = FrameAudience {
+                audience: this.making.audience,
+                index,
+                n_frames,
+            };
+            let viewing = Viewing {
+                audience: &progress,
+                options: &options,
+                ..this.making.viewing(this.run)
+            };
+            let world = this.making.world;
+            let shoot = || viewing.shoot(prepared, &job.camera);
+            let shot = this.studio.seconds.time(world, Phase::Render, shoot)?;
+            Ok(shot.is_whole.then_some(shot.image))
+        })
+    }
+
+    fn assemble(&mut self, reel: &Reel, shape: FilmShape) -> Result<Option<ContentHash>, Failure> {
+        let (world, audience) = (self.making.world, self.making.audience);
+        audience.begins("writing the film");
+        let mut told = |frame: u32| audience.progress(frame.into(), shape.n_frames.into());
+        let film = self.studio.seconds.time(world, Phase::Write, || {
+            reel.assemble(world, shape, &mut told)
+        });
+        audience.ends();
+        film
+    }
+
+    fn end(self, is_whole: bool, flicker: Option<Flicker>, film: Option<ContentHash>) -> Made {
+        let mut done = self.done;
+        done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
+        let all: String = done
+            .hashes
+            .iter()
+            .map(|(_, hash)| hash.to_string())
+            .collect();
+        Made {
+            effort: done.effort.unwrap_or_default(),
+            hash: film.unwrap_or_else(|| ContentHash::of([all.as_bytes()])),
+            is_whole,
+            n_kept: done.n_kept,
+            n_made: done.n_made,
+            warnings: done.warnings.unwrap_or_default(),
+            solution: done.solution,
+            flicker,
+            has_film: film.is_some(),
+        }
+    }
+}
+
+impl Done {
+    fn keep(&mut self, frame: u32, hash: ContentHash) {
+        self.hashes.push((frame, hash));
+        self.n_kept += 1;
+    }
+
+    fn make(&mut self, frame: u32, hash: ContentHash, effort: Effort) {
+        self.hashes.push((frame, hash));
+        self.effort = Some(self.effort.map_or(effort, |all| all.and(effort)));
+        self.n_made += 1;
+    }
+}
+
+/// A moment in words, for the texts of its frame.
+fn describe(moment: &Moment) -> String {
+    let view = &moment.view;
+    let mut text = format!(
+        "eye={} target={} fov={}",
+        view.eye,
+        view.target,
+        view.fov.degrees()
+    );
+    if let Some(step) = moment.step {
+        text.push_str(&format!(" step={step}"));
+    }
+    if let Some(sun) = moment.sun {
+        text.push_str(&format!(" sun={},{}", sun.azimuth, sun.elevation));
+    }
+    text
+}
+
+/// Turns the progress of a single frame into that of the film.
+struct FrameAudience<'a> {
+    audience: &'a dyn Audience,
+    index: u64,
+    n_frames: u64,
+}
+
+impl Audience for FrameAudience<'_> {
+    fn printed(&self, text: &str) {
+        self.audience.printed(text);
+    }
+
+    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
+        self.audience.warned(sources, found);
+    }
+
+    fn begins(&self, _: &'static str) {}
+
+    fn progress(&self, done: u64, total: u64) {
+        self.audience
+            .progress(self.index * total + done, self.n_frames * total);
+    }
+
+    fn ends(&self) {}
+}

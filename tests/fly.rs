@@ -1,0 +1,513 @@
+//! Films: they are decoded again, killed and taken up again, made in parts, and asked for in impossible ways.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use assert_cmd::Command;
+use image::AnimationDecoder;
+use image::codecs::{gif::GifDecoder, png::PngDecoder, webp::WebPDecoder};
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::process::{Output, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// A small tree that grows.
+const TREE: &str = "\
+module Bud(float len) extends Sphere(0.05);
+protected void init() [ Axiom ==> Bud(1); ]
+public void run() [
+    Bud(x) ==> F(x, 0.05) [ RU(40) Bud(x * 0.7) ] [ RU(-30) RH(90) Bud(x * 0.6) ];
+]
+";
+
+/// Options of pictures that take no time.
+const SMALL: &str = "--size 32x24 --samples 1 --max-depth 1 --threads 1 --flicker 0";
+
+/// A folder with a model in it, gone after the test.
+struct Bench {
+    folder: TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let bench = Self {
+            folder: tempfile::tempdir().unwrap(),
+        };
+        bench.write("m.rgg", TREE);
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        fs::write(self.path(name), text).unwrap();
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        let path = self.path(name);
+        fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// Runs the program in the folder; words are separated by single spaces, a `_` in a word is a space.
+    fn run(&self, line: &str) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_understory"))
+            .current_dir(self.folder.path())
+            .args(line.split(' ').map(|word| word.replace('_', " ")))
+            .timeout(Duration::from_secs(300))
+            .output()
+            .unwrap()
+    }
+
+    /// What a run says that must succeed.
+    fn succeed(&self, line: &str) -> String {
+        let output = self.run(line);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}\n{told}");
+        told
+    }
+
+    /// What a run says that must fail with this exit code.
+    fn fail(&self, line: &str, code: i32) -> String {
+        let output = self.run(line);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{line}\n{told}");
+        told
+    }
+}
+
+fn frame(folder: &str, number: u32) -> String {
+    format!("{folder}/frame-{number:06}.png")
+}
+
+/// 8-bit sRGB of a picture file.
+fn pixels(file: &[u8]) -> Vec<u8> {
+    image::load_from_memory(file)
+        .unwrap()
+        .into_rgb8()
+        .into_raw()
+}
+
+/// The content of the first box of this name, anywhere in an MP4 file.
+fn mp4_box<'a>(file: &'a [u8], name: &[u8; 4]) -> &'a [u8] {
+    let at = file.windows(4).position(|w| w == name).unwrap();
+    let size = u32::from_be_bytes(file[at - 4..at].try_into().unwrap()) as usize;
+    &file[at + 4..at - 4 + size]
+}
+
+fn be(bytes: &[u8]) -> u32 {
+    u32::from_be_bytes(bytes[..4].try_into().unwrap())
+}
+
+/// The pictures in an MP4 file, as an independent reader of boxes finds them.
+fn mp4_frames(file: &[u8]) -> Vec<rusty_h264::YuvFrame> {
+    let config = mp4_box(file, b"avcC");
+    let mut stream = Vec::new();
+    let mut unit = |bytes: &[u8]| {
+        stream.extend_from_slice(&[0, 0, 0, 1]);
+        stream.extend_from_slice(bytes);
+    };
+    let n = usize::from(u16::from_be_bytes([config[6], config[7]]));
+    unit(&config[8..8 + n]);
+    let rest = &config[8 + n..];
+    let m = usize::from(u16::from_be_bytes([rest[1], rest[2]]));
+    unit(&rest[3..3 + m]);
+    // All pictures lie one behind the other from the first place on.
+    let places = mp4_box(file, b"co64");
+    let mut at = u64::from_be_bytes(places[8..16].try_into().unwrap()) as usize;
+    let sizes = mp4_box(file, b"stsz");
+    for size in sizes[12..].chunks(4).map(be) {
+        let end = at + size as usize;
+        while at < end {
+            let length = be(&file[at..]) as usize;
+            unit(&file[at + 4..at + 4 + length]);
+            at += 4 + length;
+        }
+    }
+    assert_eq!(at, file.len());
+    rusty_h264::Decoder::new().decode_stream(&stream).unwrap()
+}
+
+/// Mean distance between the brightness of a decoded picture and that of its frame, in levels.
+fn distance(decoded: &rusty_h264::YuvFrame, rgb: &[u8]) -> f64 {
+    let luma = rgb.chunks(3).map(|p| {
+        let [r, g, b] = [p[0], p[1], p[2]].map(f64::from);
+        16.0 + (0.2126 * r + 0.7152 * g + 0.0722 * b) * 219.0 / 255.0
+    });
+    let differences = decoded
+        .y
+        .iter()
+        .zip(luma)
+        .map(|(y, l)| (f64::from(*y) - l).abs());
+    differences.sum::<f64>() / decoded.y.len() as f64
+}
+
+#[test]
+fn a_film_plays_as_many_frames_as_fast_and_as_long_as_it_says() {
+    let bench = Bench::new();
+    let told = bench.succeed(&format!(
+        "fly m.rgg --steps 3 --orbit --flight-frames 9 --fps 12 -o a.mp4 {SMALL}"
+    ));
+    assert!(told.contains("9 frames, 12 per second, 0.75 s"), "{told}");
+    let file = bench.bytes("a.mp4");
+    let header = mp4_box(&file, b"mvhd");
+    let (scale, duration) = (be(&header[12..]), be(&header[16..]));
+    assert_eq!((scale % 12, duration * 12), (0, scale * 9));
+    let frames = mp4_frames(&file);
+    assert_eq!(frames.len(), 9);
+    for (i, decoded) in (0..).zip(&frames) {
+        assert_eq!((decoded.width, decoded.height), (32, 24));
+        let own = pixels(&bench.bytes(&frame("a.mp4.frames", i)));
+        let next = pixels(&bench.bytes(&frame("a.mp4.frames", (i + 1) % 9)));
+        let (own, next) = (distance(decoded, &own), distance(decoded, &next));
+        // Single samples are noise, the hardest picture for an encoder.
+        assert!(own < 6.0 && own < next, "{i}: {own} {next}");
+    }
+}
+
+#[test]
+fn ffprobe_agrees_where_there_is_one() {
+    let probe = |args: &[&str], folder: &Path| {
+        let output = std::process::Command::new("ffprobe")
+            .args(args)
+            .current_dir(folder)
+            .output();
+        output
+            .ok()
+            .map(|output| String::from_utf8(output.stdout).unwrap())
+    };
+    let bench = Bench::new();
+    bench.succeed(&format!(
+        "fly m.rgg --orbit --flight-frames 50 --fps 24 -o a.mp4 {SMALL}"
+    ));
+    let wanted = "stream=codec_name,pix_fmt,width,height,avg_frame_rate,r_frame_rate,color_space,color_primaries,color_transfer,\
+                  color_range,duration,nb_read_frames";
+    let args = [
+        "-v",
+        "error",
+        "-count_frames",
+        "-show_entries",
+        wanted,
+        "-of",
+        "default=nw=1",
+        "a.mp4",
+    ];
+    let Some(told) = probe(&args, bench.folder.path()) else {
+        return;
+    };
+    for line in [
+        "codec_name=h264",
+        "pix_fmt=yuv420p",
+        "width=32",
+        "height=24",
+        "r_frame_rate=24/1",
+        "avg_frame_rate=24/1",
+        "color_space=bt709",
+        "color_primaries=bt709",
+        "color_transfer=bt709",
+        "color_range=tv",
+        "duration=2.083333",
+        "nb_read_frames=50",
+    ] {
+        assert!(
+            told.lines().any(|told| told == line),
+            "{line} is not in\n{told}"
+        );
+    }
+}
+
+#[test]
+fn lossless_films_hold_the_frames_themselves() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --orbit --flight-frames 5 --fps 8 {SMALL}");
+    for film in ["a.png", "a.webp", "a.gif"] {
+        bench.succeed(&format!("{fly} -o {film}"));
+    }
+    let cursor = |name: &str| Cursor::new(bench.bytes(name));
+    let apng = PngDecoder::new(cursor("a.png"))
+        .unwrap()
+        .apng()
+        .unwrap()
+        .into_frames();
+    let webp = WebPDecoder::new(cursor("a.webp")).unwrap().into_frames();
+    let gif = GifDecoder::new(cursor("a.gif")).unwrap().into_frames();
+    for (name, frames, is_exact) in [
+        ("a.png", apng, true),
+        ("a.webp", webp, true),
+        ("a.gif", gif, false),
+    ] {
+        let frames = frames.collect_frames().unwrap();
+        assert_eq!(frames.len(), 5, "{name}");
+        let mut total = Duration::ZERO;
+        for (i, shown) in (0..).zip(&frames) {
+            total += Duration::from(shown.delay());
+            let rgba = shown.buffer().as_raw();
+            let rgb: Vec<u8> = rgba.chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+            let own = pixels(&bench.bytes(&frame(&format!("{name}.frames"), i)));
+            if is_exact {
+                assert!(rgb == own, "{name} {i}");
+            } else {
+                let off: f64 = rgb
+                    .iter()
+                    .zip(&own)
+                    .map(|(a, b)| f64::from(a.abs_diff(*b)))
+                    .sum();
+                assert!(
+                    off / (rgb.len() as f64) < 8.0,
+                    "{name} {i}: {}",
+                    off / rgb.len() as f64
+                );
+            }
+        }
+        let milliseconds = total.as_millis();
+        // GIF counts hundredths: 5/8 s are 62.5 of them.
+        assert!(
+            (620..=630).contains(&milliseconds),
+            "{name}: {milliseconds} ms"
+        );
+    }
+}
+
+#[test]
+fn parts_make_the_same_film_as_one_run() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --turntable --sun 120,40 --flight-frames 7 {SMALL}");
+    bench.succeed(&format!("{fly} -o whole.mp4"));
+    let told = bench.succeed(&format!("{fly} -o parts.mp4 --frames 4..7"));
+    assert!(told.contains("once all 7 frames are there"), "{told}");
+    bench.succeed(&format!("{fly} -o parts.mp4 --frames 0..2"));
+    assert!(!bench.path("parts.mp4").exists());
+    let told = bench.succeed(&format!("{fly} -o parts.mp4 --frames 1..4"));
+    assert!(told.contains("2 frames made, 1 kept"), "{told}");
+    for i in 0..7 {
+        assert!(
+            bench.bytes(&frame("parts.mp4.frames", i))
+                == bench.bytes(&frame("whole.mp4.frames", i)),
+            "{i}"
+        );
+    }
+    assert!(bench.bytes("parts.mp4") == bench.bytes("whole.mp4"));
+}
+
+#[test]
+fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
+    let bench = Bench::new();
+    let words = format!(
+        "fly m.rgg --steps 4 --orbit --flight-frames 12 --size 64x48 --samples 4 --threads 1 --flicker 0"
+    );
+    bench.succeed(&format!("{words} -o whole.mp4"));
+    let mut before = 0;
+    // Moments from the loading of the program to after the first frames; longer each time, so that it ends.
+    for milliseconds in [1_u64, 5, 20, 47, 90, 130, 171, 222, 333, 401] {
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
+            .current_dir(bench.folder.path())
+            .args(format!("{words} -o killed.mp4").split(' '))
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(milliseconds));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // What stands under the name of a frame is a whole frame.
+        let mut there = 0;
+        for i in 0..12 {
+            let name = frame("killed.mp4.frames", i);
+            if bench.path(&name).exists() {
+                assert!(
+                    bench.bytes(&name) == bench.bytes(&frame("whole.mp4.frames", i)),
+                    "{name}"
+                );
+                there += 1;
+            }
+        }
+        assert!(there >= before, "a frame is lost");
+        before = there;
+    }
+    let told = bench.succeed(&format!("{words} -o killed.mp4"));
+    assert!(
+        told.contains(&format!("{} frames made", 12 - before)),
+        "{told}"
+    );
+    assert!(bench.bytes("killed.mp4") == bench.bytes("whole.mp4"));
+}
+
+#[test]
+fn frames_of_another_model_or_other_options_are_made_again() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --orbit --flight-frames 3 -o a.mp4 {SMALL}");
+    bench.succeed(&fly);
+    assert!(bench.succeed(&fly).contains("0 frames made, 3 kept"));
+    assert!(
+        bench
+            .succeed(&format!("{fly} --seed 5"))
+            .contains("3 frames made (")
+    );
+    let other = bench.bytes("a.mp4");
+    bench.write("m.rgg", &TREE.replace("Sphere(0.05)", "Sphere(0.2)"));
+    assert!(
+        bench
+            .succeed(&format!("{fly} --seed 5"))
+            .contains("3 frames made (")
+    );
+    assert!(bench.bytes("a.mp4") != other);
+    // A frame that is cut off is made again.
+    let name = frame("a.mp4.frames", 1);
+    let whole = bench.bytes(&name);
+    fs::write(bench.path(&name), &whole[..whole.len() - 9]).unwrap();
+    assert!(
+        bench
+            .succeed(&format!("{fly} --seed 5"))
+            .contains("1 frames made, 2 kept")
+    );
+    assert!(bench.bytes(&name) == whole);
+}
+
+#[test]
+fn linear_frames_are_kept_by_the_key_beside_them() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --orbit --flight-frames 3 -o f --frame-format exr {SMALL}");
+    bench.succeed(&fly);
+    assert!(
+        bench
+            .bytes("f/frame-000002.exr")
+            .starts_with(&[0x76, 0x2f, 0x31, 0x01])
+    );
+    assert!(bench.succeed(&fly).contains("0 frames made, 3 kept"));
+    assert!(
+        bench
+            .succeed(&format!("{fly} --seed 5"))
+            .contains("3 frames made (")
+    );
+    let damaged = bench.bytes("f/frame-000000.exr");
+    fs::write(bench.path("f/frame-000001.exr"), damaged).unwrap();
+    assert!(
+        bench
+            .succeed(&format!("{fly} --seed 5"))
+            .contains("1 frames made, 2 kept")
+    );
+    let message = bench.fail(&fly.replace("-o f", "-o b.mp4"), 2);
+    assert!(message.contains("--frame-format"), "{message}");
+}
+
+#[test]
+fn key_frames_in_the_file_beside_the_model_make_the_flight() {
+    let bench = Bench::new();
+    let keys = "[[fly.key]]\ntime = 0\neye = [0, -5, 1]\ntarget = [0, 0, 0.5]\nstep = 0\nsun = [90, 5]\n\
+                [[fly.key]]\ntime = 1\neye = [2, -5, 1]\nstep = 3\nsun = [180, 60]\n";
+    bench.write("m.toml", keys);
+    let told = bench.succeed(&format!("fly m.rgg --fps 4 -o a.gif {SMALL}"));
+    assert!(told.contains("5 frames, 4 per second"), "{told}");
+    // The last frame is the picture of its moment, exposed as the brightest frame, which it is.
+    bench.write("m.toml", "");
+    bench.succeed(
+        &format!(
+            "render m.rgg --steps 3 --sun 180,60 --eye 2,-5,1 --target 0,0,0.5 -o last.png {SMALL}"
+        )
+        .replace(" --flicker 0", ""),
+    );
+    assert!(pixels(&bench.bytes("last.png")) == pixels(&bench.bytes(&frame("a.gif.frames", 4))));
+}
+
+#[test]
+fn bad_paths_are_refused_with_what_is_wrong_and_where() {
+    let bench = Bench::new();
+    // So many steps that growth would not end: it must not begin.
+    for (flags, word) in [
+        ("", "--orbit"),
+        ("--orbit --turntable", "two paths"),
+        ("--key time=0", "one key frame"),
+        ("--key time=1;time=0", "not after"),
+        ("--key time=0;time=NaN", "from 0 up"),
+        ("--key time=0;time=1_eye=1,NaN,2", "finite"),
+        ("--key time=0;time=1_eye=1,2,3_target=1,2,3", "same point"),
+        (
+            "--flight-frames 25 --key time=0_eye=0,0,0_target=2,0,0;time=1_eye=2,0,0_target=0,0,0",
+            "frame 12",
+        ),
+        ("--key time=0;time=1_step=-1", "from 0 up"),
+        ("--key time=0;time=1e7", "1000000 frames"),
+        ("--grow 3..3", "A less than B"),
+        ("--orbit --frames 100..121", "--flight-frames 121"),
+        ("--orbit --size 31x24", "--size 32x24"),
+        ("--orbit --fps 0", "1 to 240"),
+        ("--orbit --flight-frames 0", "1 to 1000000"),
+        ("--orbit --even-speed", "key frames"),
+    ] {
+        let flags = if flags.is_empty() {
+            String::new()
+        } else {
+            format!(" {flags}")
+        };
+        let size = if flags.contains("--size") {
+            ""
+        } else {
+            " --size 32x24"
+        };
+        let message = bench.fail(
+            &format!("fly m.rgg -o a.mp4 --steps 1000000{size}{flags}"),
+            2,
+        );
+        assert!(message.contains(word), "{flags}: {message}");
+    }
+    for (keys, line, word) in [
+        ("[[fly.key]]\ntime = 3\n", "m.toml:1", "one key frame"),
+        ("[fly]\nkey = []\n", "m.toml:2", "no key frames"),
+        (
+            "[[fly.key]]\ntime = 3\n[[fly.key]]\ntime = 2\n",
+            "m.toml:3",
+            "not after",
+        ),
+        (
+            "[[fly.key]]\ntime = 3\n[[fly.key]]\neye = [1, 2, 3]\n",
+            "m.toml:3",
+            "no `time`",
+        ),
+        (
+            "[[fly.key]]\ntime = nan\n[[fly.key]]\ntime = 2\n",
+            "m.toml:2",
+            "from 0 up",
+        ),
+    ] {
+        bench.write("m.toml", keys);
+        let message = bench.fail(&format!("fly m.rgg -o a.mp4 --steps 1000000 {SMALL}"), 1);
+        assert!(
+            message.contains(word) && message.contains(line),
+            "{keys}: {message}"
+        );
+    }
+    assert!(!bench.path("a.mp4").exists() && !bench.path("a.mp4.frames").exists());
+}
+
+#[test]
+fn a_step_that_cannot_be_reached_is_an_error() {
+    let bench = Bench::new();
+    bench.write("m.rgg", "protected void init() [ Axiom ==> F(1); ]\n");
+    let message = bench.fail(&format!("fly m.rgg --grow 0..3 -o a.mp4 {SMALL}"), 1);
+    assert!(message.contains("run"), "{message}");
+}
+
+#[test]
+fn flicker_is_measured_and_told() {
+    let bench = Bench::new();
+    let line = "fly m.rgg --steps 3 --orbit --flight-frames 24 --frames 0..3 --size 48x32 --samples 4 --flicker 1 -o f --report r.json";
+    let told = bench.succeed(line);
+    assert!(told.contains("flicker "), "{told}");
+    let report: serde_json::Value = serde_json::from_slice(&bench.bytes("r.json")).unwrap();
+    let flicker = &report["flicker"];
+    assert_eq!(flicker["pairs"], 1);
+    let level = |name: &str| flicker[name].as_f64().unwrap();
+    // Four light paths in a pixel are noisy.
+    assert!(level("flicker_with_new_noise") > 1.0, "{flicker}");
+    assert!(
+        level("flicker") > 1.0 && level("flicker") <= level("change"),
+        "{flicker}"
+    );
+    // Random numbers are those of the pixel, not of the frame: where nothing moves, nothing changes.
+    let still = line
+        .replace("--orbit", "--key time=0_eye=2,-4,1;time=1")
+        .replace("-o f", "-o g");
+    let told = bench.succeed(&still);
+    assert!(told.contains("flicker 0.00 of 255"), "{told}");
+}
