@@ -27,6 +27,10 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
         let shape = course::shape(&run.options);
         let reel = reel.with(run.options.frame_format.value, shape)?;
         check_wishes(&shell.world, run)?;
+        if let Some(view) = course::decided(&run.options) {
+            // What needs no scene is refused before there is a folder.
+            course::cameras(run, &course::flight(&run.options, view))?;
+        }
         reel.open(&shell.world)?;
         let base = run.options.clone();
         let made = shell.making(Partial::Drop).film(studio, run, &reel)?;
