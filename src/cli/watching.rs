@@ -258,6 +258,8 @@ impl Outlet for Pictures<'_> {
             n_made: 1,
             warnings: finished.warnings.clone(),
             solution: finished.solution,
+            flicker: None,
+            has_film: false,
         };
         let told = (&studio.seconds, studio.work);
         shell.report(self.report.as_ref(), run, told, &made)?;
