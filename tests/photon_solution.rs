@@ -27,6 +27,7 @@ use understory::options::{Options, Origin};
 use understory::pipeline::audience::Audience;
 use understory::pipeline::failure::Failure;
 use understory::pipeline::making::{Made, Making, Partial};
+use understory::pipeline::reel::Reel;
 use understory::pipeline::report::Report;
 use understory::pipeline::report::SolutionOrigin;
 use understory::pipeline::solving::SolutionFiles;
@@ -103,7 +104,7 @@ impl Bench {
             options.set(key, text, Origin::Flag).unwrap();
         }
         let opened = studio.read(&options)?;
-        let run = studio.check(opened)?;
+        let mut run = studio.check(opened)?;
         let cancel = CancelToken::default();
         let making = Making {
             world: &self.world,
@@ -118,7 +119,8 @@ impl Bench {
             making.picture(studio, &run, &target)?
         } else {
             fs::create_dir_all(&path).unwrap();
-            making.film(studio, &run, &path)?
+            let reel = Reel::new(&self.world, &path)?;
+            making.film(studio, &mut run, &reel)?
         };
         let model = (&run.sources.map, run.sources.model_hash);
         let report = Report::new(

@@ -32,10 +32,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
             course::cameras(run, &course::flight(&run.options, view))?;
         }
         reel.open(&shell.world)?;
-        let base = run.options.clone();
         let made = shell.making(Partial::Drop).film(studio, run, &reel)?;
-        // Single frames had options of their own.
-        run.options = base;
         shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
         let seconds = studio.seconds.summary();
         for line in summary(&reel, shape, &made, &seconds) {

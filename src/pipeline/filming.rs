@@ -398,6 +398,8 @@ impl Shooting<'_, '_> {
     }
 
     fn end(self, is_whole: bool, flicker: Option<Flicker>, film: Option<ContentHash>) -> Made {
+        // Single frames had options of their own.
+        self.run.options = self.base;
         let mut done = self.done;
         done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
         let all: String = done
