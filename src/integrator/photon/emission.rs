@@ -151,6 +151,8 @@ impl<'s> Emission<'s> {
     /// Photon number `index` of `n`; a pure function of its arguments. `None` if it carries nothing.
     ///
     /// The photons of a source are spread together over its surface and directions. With other seeds come independent photons.
+    /// If the scene's box changes, as that of a growing plant does, the photons of parallel light and sky move in proportion: the
+    /// same photon of the same seed falls on nearly the same place, so steps have most of their noise in common, but not all.
     #[must_use]
     pub fn photon(&self, index: u64, n: u64, seed: u64) -> Option<Photon> {
         // Systematic sampling: source s gets the photons whose number falls into its part of 0..n, the bounds at random.
