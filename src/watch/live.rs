@@ -3,11 +3,11 @@
 
 use super::command;
 use super::pace::Pace;
-use super::problems;
+use super::problems::{self, Problem};
 use super::room::{Room, Task};
 use super::session::Runner;
 use super::showing::{Sight, viewing};
-use super::state::{self, Activity};
+use super::state::{self, Activity, Number};
 use super::wish::Wish;
 use crate::film::LinearImage;
 use crate::integrator::CancelToken;
@@ -148,10 +148,12 @@ impl<'s> Live<'s> {
     /// The checked model with the options of a wish.
     fn checked(&mut self, wish: &Wish) -> Result<Run, Failure> {
         let flags = wish.over(&self.flags);
-        let changes = self.possible(wish)?;
+        let (changes, numbers) = self.possible(wish)?;
         if let Some((known, run)) = &self.checked
             && *known == changes
         {
+            let warnings = problems::of_diagnostics(&run.sources.map, &run.warnings);
+            self.room.tell(|state| state.problems = warnings);
             return with_options(run, &flags);
         }
         self.audience.begins("reading");
@@ -162,18 +164,20 @@ impl<'s> Live<'s> {
         let files = map.files().iter().map(|file| PathBuf::from(&*file.name));
         self.room.set_files(files.collect());
         let run = self.studio.check(opened)?;
+        // Of a model with errors those that could be read are not all.
+        self.room.tell(|state| state.constants = numbers);
         self.checked = Some((changes, run.clone()));
         Ok(run)
     }
 
     /// The constants that are changed: what the command line says, and over it what the page does, if the model still has
-    /// it. Tells the page all that the model has.
-    fn possible(&self, wish: &Wish) -> Result<Vec<Change>, Failure> {
+    /// it. And all that the model has.
+    fn possible(&self, wish: &Wish) -> Result<(Vec<Change>, Vec<Number>), Failure> {
         if let Some((known, _)) = &self.checked
             && wish.constants.is_empty()
             && *known == self.given
         {
-            return Ok(known.clone());
+            return Ok((known.clone(), Vec::new()));
         }
         let sources =
             Inputs::find(self.world, &self.model)?.read_changed(self.world, &self.given)?;
@@ -190,9 +194,8 @@ impl<'s> Live<'s> {
             })
         };
         let given: Vec<Change> = self.given.iter().filter(is_free).cloned().collect();
-        let numbers = found.iter().map(state::Number::from).collect();
-        self.room.tell(|state| state.constants = numbers);
-        Ok(given.into_iter().chain(wanted).collect())
+        let numbers = found.iter().map(Number::from).collect();
+        Ok((given.into_iter().chain(wanted).collect(), numbers))
     }
 
     /// Solves a scene and shows it, for as long as wishes ask for the same solution.
@@ -214,6 +217,12 @@ impl<'s> Live<'s> {
         let time = self.world.now().saturating_sub(start);
         self.studio.seconds.add(Phase::Prepare, time);
         let warnings = viewing.shortcomings(scene);
+        let lacks = warnings.iter().map(|text| Problem {
+            is_warning: true,
+            message: (*text).to_owned(),
+            ..Problem::default()
+        });
+        self.room.tell(|state| state.problems.extend(lacks));
         self.exposure = None;
         if !is_stale {
             self.last = Some((run.clone(), scene.clone()));
@@ -342,9 +351,9 @@ impl Runner for Live<'_> {
         (self.checked, self.last) = (None, None);
         self.audience.ends();
         self.outlet.panicked();
-        let problem = problems::Problem {
+        let problem = Problem {
             message: "understory itself failed on this model; that is a fault of the program, please report it".to_owned(),
-            ..problems::Problem::default()
+            ..Problem::default()
         };
         self.room.tell(|state| {
             state.problems = vec![problem];

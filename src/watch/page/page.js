@@ -198,7 +198,7 @@ events.addEventListener('state', (event) => {
   $('name').textContent = state.name;
   if (state.command) $('command').textContent = state.command;
   const [width, height] = (state.options.size?.text ?? '3x2').split('x').map(Number);
-  $('stage').style.setProperty('--aspect', width / height);
+  document.querySelector('.frame').style.setProperty('--aspect', width / height);
   showActivity();
   showProblems();
   settings.show(state);

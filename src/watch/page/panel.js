@@ -136,11 +136,11 @@ export function panel({ wish, send, post, tell, element }) {
     const text = JSON.stringify(state.constants);
     if (text === numbersShown) return;
     numbersShown = text;
-    // What the file says by now is no wish any more.
+    // What the file says by now is no wish any more. What it lacks may be half typed, and come back.
     const known = new Map(state.constants.map((number) => [number.id, number]));
     let isLess = false;
     for (const [id, wanted] of Object.entries(wish.constants)) {
-      if (!known.has(id) || Number(known.get(id).text) === Number(wanted)) {
+      if (known.has(id) && Number(known.get(id).text) === Number(wanted)) {
         delete wish.constants[id];
         isLess = true;
       }
