@@ -127,6 +127,7 @@ impl<'s> Live<'s> {
         self.is_once = true;
         let task = Task {
             cancel: cancel.clone(),
+            leave: cancel.clone(),
             ..self.room.take(true)
         };
         self.work(&task, cancel)
@@ -262,7 +263,7 @@ impl<'s> Live<'s> {
                 solution: solved.facts,
                 is_stale,
             };
-            match self.show(&sight, stop) {
+            match self.show(&sight) {
                 Err(Failure::Stopped) if !self.is_once => {}
                 Ok(()) if !self.is_once => self.room.wait(task.number, stop),
                 other => return other,

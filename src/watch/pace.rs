@@ -4,7 +4,7 @@ use crate::options::value::Renderer;
 use std::time::Duration;
 
 /// How long a first impression may take.
-const MOMENT: Duration = Duration::from_millis(45);
+const MOMENT: Duration = Duration::from_millis(30);
 /// How long the second one may take, where the whole picture takes much longer.
 const WHILE: Duration = Duration::from_millis(250);
 /// Samples per second before anything was measured.
@@ -68,7 +68,7 @@ mod tests {
             .iter()
             .map(|(w, h)| f64::from(*w) * f64::from(*h))
             .collect();
-        assert!((samples[0] - 4500.0).abs() < 200.0 && (samples[1] - 25000.0).abs() < 500.0);
+        assert!((samples[0] - 3000.0).abs() < 200.0 && (samples[1] - 25000.0).abs() < 500.0);
         assert!(pace.drafts(Renderer::Raytracer, (960, 640)).is_empty());
         pace.measured(Renderer::Path, 1.0, second);
         assert_eq!(pace.drafts(Renderer::Path, (960, 640))[0].1, 24);

@@ -41,6 +41,8 @@ struct Inside {
     n_wishes: u64,
     /// Stops what is being done for the wish before.
     cancel: CancelToken,
+    /// Stops it if it is of no use for any view.
+    leave: CancelToken,
     /// Whether what is being done is of use for any view.
     suits_all_views: bool,
     frames: VecDeque<(u64, File)>,
@@ -61,6 +63,8 @@ pub struct Task {
     pub number: u64,
     /// Set as soon as a newer wish, or a change of the files, makes the work useless.
     pub cancel: CancelToken,
+    /// Set as soon as they make all views of the same scene useless.
+    pub leave: CancelToken,
 }
 
 impl Room {
@@ -77,6 +81,7 @@ impl Room {
                 wish: Wish::default(),
                 n_wishes: 0,
                 cancel: CancelToken::default(),
+                leave: CancelToken::default(),
                 suits_all_views: false,
                 frames: VecDeque::new(),
                 n_frames: 0,
@@ -107,12 +112,14 @@ impl Room {
     pub fn take(&self, suits_all_views: bool) -> Task {
         let mut inside = self.lock();
         inside.cancel = CancelToken::default();
+        inside.leave = CancelToken::default();
         inside.suits_all_views = suits_all_views;
         inside.state.is_queued = false;
         Task {
             wish: inside.wish.clone(),
             number: inside.n_wishes,
             cancel: inside.cancel.clone(),
+            leave: inside.leave.clone(),
         }
     }
 
@@ -151,7 +158,10 @@ impl Room {
 
     /// The files changed, or watching ends: whatever is being done is to stop, whoever waits is woken.
     pub fn interrupt(&self) {
-        self.lock().cancel.cancel();
+        let inside = self.lock();
+        inside.cancel.cancel();
+        inside.leave.cancel();
+        drop(inside);
         self.bell.notify_all();
     }
 
@@ -169,9 +179,12 @@ impl Room {
         if inside.wish == wish {
             return;
         }
-        let keeps_on = inside.suits_all_views && inside.wish.differs_in_view_only(&wish);
-        if !keeps_on {
+        let is_view = inside.wish.differs_in_view_only(&wish);
+        if !(is_view && inside.suits_all_views) {
             inside.cancel.cancel();
+        }
+        if !is_view {
+            inside.leave.cancel();
         }
         inside.wish = wish;
         inside.n_wishes += 1;
@@ -248,7 +261,9 @@ mod tests {
         room.ask(task.wish.clone());
         assert!(!task.cancel.is_cancelled(), "the same again is no wish");
         room.ask(wish(r#"{"options":{"eye":"4,2,3","steps":"3"}}"#));
-        assert!(task.cancel.is_cancelled());
+        assert!(task.cancel.is_cancelled() && !task.leave.is_cancelled());
+        room.ask(Wish::default());
+        assert!(task.leave.is_cancelled());
         room.wait(task.number, &CancelToken::default());
     }
 

@@ -38,16 +38,12 @@ pub(super) struct Sight<'a, 's> {
 
 impl Live<'_> {
     /// Shows drafts, then the picture as it gets better.
-    pub(super) fn show(
-        &mut self,
-        sight: &Sight<'_, '_>,
-        stop: &CancelToken,
-    ) -> Result<(), Failure> {
+    pub(super) fn show(&mut self, sight: &Sight<'_, '_>) -> Result<(), Failure> {
         self.audience.begins("rendering");
         self.studio.work.views += 1;
         let mut seconds = PhaseSeconds::default();
         if !self.is_once {
-            self.drafts(sight, stop)?;
+            self.drafts(sight)?;
         }
         let audience = self.audience.clone();
         let viewing = viewing(self.world, &*audience, sight.run, &sight.task.cancel);
@@ -82,15 +78,16 @@ impl Live<'_> {
         self.finish(sight, &shot, exposure)
     }
 
-    /// Shows small pictures with one sample a pixel. They are stopped only by what makes all of the scene useless: who drags
-    /// the view along would otherwise never see one.
-    fn drafts(&mut self, sight: &Sight<'_, '_>, stop: &CancelToken) -> Result<(), Failure> {
+    /// Shows small pictures with one sample a pixel. The first one is stopped only by what makes all of the scene useless: who
+    /// drags the view along would otherwise never see one.
+    fn drafts(&mut self, sight: &Sight<'_, '_>) -> Result<(), Failure> {
         let audience = self.audience.clone();
         let options = &sight.run.options;
         let (size, renderer) = (options.size.value, options.renderer.value);
+        let mut cancel = &sight.task.leave;
         for (width, height) in self.pace.drafts(renderer, (size.width, size.height)) {
             let start = self.world.now();
-            let viewing = viewing(self.world, &*audience, sight.run, stop);
+            let viewing = viewing(self.world, &*audience, sight.run, cancel);
             let image = viewing.glimpse(sight.prepared, &sight.camera, (width, height), 1)?;
             let time = self.world.now().saturating_sub(start);
             self.pace
@@ -105,7 +102,8 @@ impl Live<'_> {
             };
             self.exposure = Some(exposure);
             self.publish(&image, exposure, frame(&image, false, 0));
-            if sight.task.cancel.is_cancelled() {
+            cancel = &sight.task.cancel;
+            if cancel.is_cancelled() {
                 return Err(Failure::Stopped);
             }
         }
