@@ -13,6 +13,7 @@
 
 use super::cache::{Asked, IrradianceCache, Place};
 use super::hemisphere::{Gathered, Hemisphere};
+use super::irradiance::IrradianceMap;
 use super::stored::facing;
 use super::view::{Asker, View, frame_of};
 use crate::color::Rgb;
@@ -21,7 +22,7 @@ use crate::integrator::medium::Media;
 use crate::math::frame::Frame;
 use crate::math::{Ray, rng, warp};
 use crate::sampler::{Sampler, Use};
-use crate::scene::{Piece, SurfacePoint};
+use crate::scene::{Piece, Scene, SurfacePoint};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -35,19 +36,45 @@ const RAYS_PER_OWN: u32 = 32;
 /// How far above a place its surface is looked for, in spacings of the places, which are stored with 24 bits.
 const LIFT: f64 = 0.02;
 
+/// What the records of a cache depend on, besides scene and maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct GatherSettings {
+    /// Rays of each gather for the cache.
+    pub(super) rays: u32,
+    /// How often rays are followed through mirrors and glass.
+    pub(super) max_depth: u32,
+    pub(super) seed: u64,
+}
+
 /// How indirect light is gathered.
 #[derive(Debug)]
 pub(super) struct FinalGather {
-    /// Rays of each gather for the cache.
-    pub(super) rays: u32,
-    pub(super) seed: u64,
-    pub(super) cache: IrradianceCache,
+    pub(super) settings: GatherSettings,
+    cache: IrradianceCache,
 }
 
 impl FinalGather {
+    /// A gather that has not been asked yet.
+    pub(super) fn new(
+        scene: &Scene,
+        map: Option<&IrradianceMap>,
+        settings: GatherSettings,
+    ) -> Self {
+        let bounds = scene.bounds();
+        let (center, size) = if bounds.is_empty() {
+            (DVec3::ZERO, 1.0)
+        } else {
+            (bounds.center(), bounds.diagonal().length())
+        };
+        Self {
+            settings,
+            cache: IrradianceCache::new(map, center, size),
+        }
+    }
+
     /// Rays of a sample of the picture where the cache does not answer.
     fn own_rays(&self) -> u32 {
-        self.rays.div_ceil(RAYS_PER_OWN)
+        self.settings.rays.div_ceil(RAYS_PER_OWN)
     }
 }
 
@@ -72,7 +99,7 @@ impl View<'_> {
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Rgb {
-        // All light of a leaf is known as a whole, but not how it lies on it.
+        // A level that is wider than a leaf knows nothing of it.
         let flat = match *spot.piece {
             Piece::Flat { size, .. } => size,
             Piece::Body(extent) => extent,
@@ -143,9 +170,9 @@ impl View<'_> {
             return None;
         }
         let media = self.bodies.around(above);
-        let stream = rng::hash(&[gather.seed, at as u64]);
+        let stream = rng::hash(&[gather.settings.seed, at as u64]);
         let side = facing(point.normal_g, normal);
-        let hemisphere = Hemisphere::new(side, gather.rays);
+        let hemisphere = Hemisphere::new(side, gather.settings.rays);
         Some(hemisphere.gather(stream, |wi, sampler| {
             let asker = Asker::Gather {
                 vertex: 0,

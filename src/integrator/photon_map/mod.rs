@@ -38,12 +38,11 @@ use super::{Integrator, RadianceEstimator, RenderContext, RenderError, Solution,
 use crate::material::Material;
 use crate::math::rng;
 use crate::scene::Scene;
-use cache::IrradianceCache;
-use final_gather::FinalGather;
+use final_gather::{FinalGather, GatherSettings};
 use glam::DVec3;
 use irradiance::IrradianceMap;
 pub use solution::PhotonSolution;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use stored::{Collector, Stored, Wanted};
 use view::View;
 
@@ -147,23 +146,25 @@ impl PhotonMapping {
     }
 
     /// How views find indirect light, unless straight in the maps.
-    fn gather(&self, scene: &Scene, maps: &PhotonSolution, seed: u64) -> Option<FinalGather> {
+    fn gather(&self, scene: &Scene, maps: &PhotonSolution, seed: u64) -> Option<Arc<FinalGather>> {
         // Rays that find light behind mirrors and glass leave it to the map of caustics; there must be one.
         let is_specular = scene.materials().iter().any(Material::is_specular);
         let has_caustics_apart = !is_specular || self.caustic_photons_of(scene) > 0;
-        (self.final_gather > 0 && has_caustics_apart).then(|| {
-            let bounds = scene.bounds();
-            let (center, size) = if bounds.is_empty() {
-                (DVec3::ZERO, 1.0)
-            } else {
-                (bounds.center(), bounds.diagonal().length())
-            };
-            FinalGather {
-                rays: self.final_gather.min(MOST_GATHER_RAYS),
-                seed,
-                cache: IrradianceCache::new(maps.global.as_ref(), center, size),
-            }
-        })
+        if self.final_gather == 0 || !has_caustics_apart {
+            return None;
+        }
+        let settings = GatherSettings {
+            rays: self.final_gather.min(MOST_GATHER_RAYS),
+            max_depth: self.max_depth,
+            seed,
+        };
+        let new = || Arc::new(FinalGather::new(scene, maps.global.as_ref(), settings));
+        let shared = maps.gather.get_or_init(new);
+        if shared.settings == settings {
+            Some(Arc::clone(shared))
+        } else {
+            Some(new())
+        }
     }
 
     fn solution(
@@ -184,6 +185,7 @@ impl PhotonMapping {
             caustic,
             emitted: self.global_photons + n_caustic,
             stored: n_global_stored + n_caustic_stored,
+            gather: OnceLock::new(),
         })
     }
 

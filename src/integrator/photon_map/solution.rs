@@ -6,12 +6,14 @@
 //! left before memory is asked for, and numbers that no solution has are refused.
 
 use super::estimate::Hidden;
+use super::final_gather::FinalGather;
 use super::irradiance::{IrradianceMap, Layer, PieceLight, Sample};
 use super::stored::PackedNormal;
 use crate::color::Rgb;
 use crate::integrator::Unreadable;
 use crate::math::PrimitiveId;
 use glam::{DVec3, Vec3};
+use std::sync::{Arc, OnceLock};
 
 /// Bytes of a sample from which nothing is hidden.
 const SAMPLE: usize = 35;
@@ -34,6 +36,8 @@ pub struct PhotonSolution {
     pub emitted: u64,
     /// Photons that arrived where they are stored, and were.
     pub stored: u64,
+    /// What views have gathered with the settings of the first of them. Not written: any view finds it again.
+    pub(super) gather: OnceLock<Arc<FinalGather>>,
 }
 
 impl PhotonSolution {
@@ -68,6 +72,7 @@ impl PhotonSolution {
             caustic,
             emitted,
             stored,
+            gather: OnceLock::new(),
         })
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct View<'s> {
     pub(super) maps: Arc<PhotonSolution>,
     pub(super) max_depth: u32,
     /// How indirect light is found where the camera looks; `None`: in the map.
-    pub(super) gather: Option<FinalGather>,
+    pub(super) gather: Option<Arc<FinalGather>>,
 }
 
 /// Who wants to know what light comes along a ray.
