@@ -4,9 +4,16 @@
 //! ISO/IEC 14496-15: Information technology, Coding of audio-visual objects, Part 15: Carriage of network abstraction layer
 //! (NAL) unit structured video in the ISO base media file format.
 //!
+//! # BaumRushmeier1989
+//! D. Baum, H. Rushmeier, J. Winget: Improving Radiosity Solutions Through the Use of Analytically Determined Form-Factors.
+//! SIGGRAPH 1989. <https://doi.org/10.1145/74334.74367>
+//!
 //! # Bayer1973
 //! B. E. Bayer: An Optimum Method for Two-Level Rendition of Continuous-Tone Pictures. IEEE International Conference on
 //! Communications, 1973.
+//!
+//! # Bekaert1999
+//! P. Bekaert: Hierarchical and Stochastic Algorithms for Radiosity. PhD thesis, Katholieke Universiteit Leuven, 1999.
 //!
 //! # Benthin2024
 //! C. Benthin, D. Meister, J. Barczak, R. Mehalwal, J. Tsakok, A. Kensler: H-PLOC: Hierarchical Parallel Locally-Ordered
@@ -44,6 +51,21 @@
 //! # Cigolle2014
 //! Z. Cigolle, S. Donow, D. Evangelakos, M. Mara, M. McGuire, Q. Meyer: A Survey of Efficient Representations for
 //! Independent Unit Vectors. Journal of Computer Graphics Techniques 3(2), 2014. <https://jcgt.org/published/0003/02/01/>
+//!
+//! # CohenChen1988
+//! M. Cohen, S. Chen, J. Wallace, D. Greenberg: A Progressive Refinement Approach to Fast Radiosity Image Generation.
+//! SIGGRAPH 1988. <https://doi.org/10.1145/54852.378487>
+//!
+//! # CohenGreenberg1985
+//! M. Cohen, D. Greenberg: The Hemi-Cube: A Radiosity Solution for Complex Environments. SIGGRAPH 1985.
+//! <https://doi.org/10.1145/325165.325171>
+//!
+//! # CohenGreenberg1986
+//! M. Cohen, D. Greenberg, D. Immel, P. Brock: An Efficient Radiosity Approach for Realistic Image Synthesis. IEEE Computer
+//! Graphics and Applications 6(3), 1986. <https://doi.org/10.1109/MCG.1986.276629>
+//!
+//! # CohenWallace1993
+//! M. Cohen, J. Wallace: Radiosity and Realistic Image Synthesis. Academic Press, 1993.
 //!
 //! # ContyKulla2018
 //! A. Conty Estevez, C. Kulla: Importance Sampling of Many Lights with Adaptive Tree Splitting. Proceedings of the ACM on
@@ -149,6 +171,9 @@
 //! E. Lafortune, Y. Willems: Using the Modified Phong Reflectance Model for Physically Based Rendering. Report CW 197,
 //! Katholieke Universiteit Leuven, 1994.
 //!
+//! # Malley1988
+//! T. Malley: A Shading Method for Computer Generated Images. Master's thesis, University of Utah, 1988.
+//!
 //! # Meister2018a
 //! D. Meister, J. Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction. IEEE Transactions on
 //! Visualization and Computer Graphics 24(3), 2018. <https://doi.org/10.1109/TVCG.2017.2669983>
@@ -175,6 +200,9 @@
 //! # Neumaier1974
 //! A. Neumaier: Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen. Zeitschrift für Angewandte Mathematik
 //! und Mechanik 54(1), 1974. <https://doi.org/10.1002/zamm.19740540106>
+//!
+//! # Neumann1995
+//! L. Neumann: Monte Carlo Radiosity. Computing 55(1), 1995. <https://doi.org/10.1007/BF02238235>
 //!
 //! # NumericalRecipes
 //! W. Press, S. Teukolsky, W. Vetterling, B. Flannery: Numerical Recipes, third edition. Cambridge University Press, 2007.
@@ -204,6 +232,14 @@
 //! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.
 //! <https://doi.org/10.1080/10867651.1997.10487479>
 //!
+//! # SillionPuech1989
+//! F. Sillion, C. Puech: A General Two-Pass Method Integrating Specular and Diffuse Reflection. SIGGRAPH 1989.
+//! <https://doi.org/10.1145/74334.74368>
+//!
+//! # Sparrow1963
+//! E. Sparrow: A New and Simpler Formulation for Radiative Angle Factors. Journal of Heat Transfer 85(2), 1963.
+//! <https://doi.org/10.1115/1.3686058>
+//!
 //! # Stafford2011
 //! D. Stafford: Better Bit Mixing, 2011. <https://zimbry.blogspot.com/2011/09/better-bit-mixing-improving-on.html>
 //!
@@ -214,6 +250,10 @@
 //! # Steffen1990
 //! M. Steffen: A Simple Method for Monotonic Interpolation in One Dimension. Astronomy and Astrophysics 239, 1990, 443-450.
 //! <https://ui.adsabs.harvard.edu/abs/1990A%26A...239..443S>
+//!
+//! # TakahasiMori1974
+//! H. Takahasi, M. Mori: Double Exponential Formulas for Numerical Integration. Publications of the Research Institute for
+//! Mathematical Sciences 9(3), 1974. <https://doi.org/10.2977/prims/1195192451>
 //!
 //! # Urena2013
 //! C. Ureña, M. Fajardo, A. King: An Area-Preserving Parametrization for Spherical Rectangles. Computer Graphics Forum 32(4),

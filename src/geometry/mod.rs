@@ -7,6 +7,7 @@
 //! image. All of it is `f64`.
 
 pub mod area;
+pub mod chart;
 pub mod curved;
 pub mod import;
 pub mod interval;

@@ -83,4 +83,20 @@ pub enum RenderError {
         /// How many may be.
         most: u64,
     },
+    /// More patches than memory was granted for.
+    #[error("the surfaces are {n} patches at least, more than the {most} there is memory for")]
+    TooManyPatches {
+        /// How many there are.
+        n: u64,
+        /// How many may be.
+        most: u64,
+    },
+    /// Form factors would take more memory than was granted.
+    #[error("form factors would take {needed} bytes, more than the {most} there is memory for")]
+    TooManyFactors {
+        /// Bytes they would take.
+        needed: u64,
+        /// Bytes they may take.
+        most: u64,
+    },
 }

@@ -20,6 +20,7 @@ pub mod mis;
 pub mod path;
 pub mod photon;
 pub mod photon_map;
+pub mod radiosity;
 pub mod raytracer;
 pub mod requirements;
 mod solution;
@@ -28,6 +29,7 @@ pub mod sources;
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
 pub use path::Path;
 pub use photon_map::PhotonMapping;
+pub use radiosity::Radiosity;
 pub use raytracer::Raytracer;
 pub use solution::{Solution, Unreadable};
 
@@ -102,6 +104,8 @@ pub enum Method {
     Raytracer(Raytracer),
     /// Photon mapping: one solve for all cameras.
     Photon(PhotonMapping),
+    /// Radiosity: what surfaces send each other, solved once for all cameras.
+    Radiosity(Radiosity),
 }
 
 impl Method {
@@ -112,6 +116,7 @@ impl Method {
             Self::Path(path) => path,
             Self::Raytracer(raytracer) => raytracer,
             Self::Photon(photon_mapping) => photon_mapping,
+            Self::Radiosity(radiosity) => radiosity,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What a method finds out about a scene once, for every camera.
 
 use super::photon_map::PhotonSolution;
+use super::radiosity::RadiositySolution;
 use std::sync::Arc;
 
 /// What a method found out about a scene. Borrows nothing; clones share it.
@@ -10,6 +11,8 @@ pub enum Solution {
     Nothing,
     /// Photons, made ready.
     Photons(Arc<PhotonSolution>),
+    /// Light of patches and elements.
+    Radiosity(Arc<RadiositySolution>),
 }
 
 /// Why bytes are no solution.
@@ -22,7 +25,7 @@ impl Solution {
     #[must_use]
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         match self {
-            Self::Nothing => None,
+            Self::Nothing | Self::Radiosity(_) => None,
             Self::Photons(photons) => Some(photons.to_bytes()),
         }
     }
@@ -31,7 +34,7 @@ impl Solution {
     #[must_use]
     pub fn photons(&self) -> Option<(u64, u64)> {
         match self {
-            Self::Nothing => None,
+            Self::Nothing | Self::Radiosity(_) => None,
             Self::Photons(photons) => Some((photons.emitted, photons.stored)),
         }
     }

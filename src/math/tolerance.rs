@@ -215,3 +215,9 @@ pub const TARGET_SLACK: f64 = 1e-9;
 /// Photons are not sent to rings of an endless plane that may throw back less towards the scene than this part of the light that
 /// the scene gets itself.
 pub const RING_SHARE: f64 = 1e-3;
+
+/// How near corners of neighbouring elements are to each other, as a share of the size of the scene.
+///
+/// The same corner, reached from two faces through their frames, differs by a few roundings in `f64`; different corners are apart by
+/// more than a millionth unless elements are that small, whose light may be shared. Used by [`crate::integrator::radiosity`].
+pub const WELD: f64 = 1e-9;

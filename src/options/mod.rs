@@ -19,6 +19,7 @@ pub mod explain;
 pub mod flying;
 pub mod lighting;
 pub mod preset;
+pub mod radiosity;
 pub mod setting;
 pub mod sidecar;
 pub mod surroundings;

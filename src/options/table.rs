@@ -2,6 +2,7 @@
 
 use super::flying::{FrameCount, FrameFormat, FrameRate};
 use super::lighting::{Fraction, PlotSize};
+use super::radiosity::{HemicubePixels, SplitDepth, Threshold, Width};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
 use super::value::{
@@ -10,6 +11,7 @@ use super::value::{
 };
 use crate::animation::KeyFrames;
 use crate::diag::nearest;
+use crate::integrator::radiosity::{FormFactorMethod, Solver};
 use crate::light::sun_position::{Moment, Place};
 use crate::math::angle::Angle;
 use crate::turtle::Layers;
@@ -229,7 +231,7 @@ options! {
     /// Vertical field of view in degrees
     fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
 
-    /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap) or `raytracer` (direct light, mirrors and glass: fast)
+    /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap), `radiosity` (what matt surfaces send each other, solved once on the surfaces) or `raytracer` (direct light, mirrors and glass: fast)
     renderer: Renderer = "path", "renderer", "NAME", Render, Solution, PICTURING;
     /// Preset: `draft`, `preview` or `final`
     quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
@@ -241,7 +243,7 @@ options! {
     max_depth: Option<u32> = "none", "max-depth", "N", Render, View, LIGHTING;
     /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
     supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
-    /// How often the ray tracer and photon mapping follow a ray through mirrors and glass
+    /// How often the ray tracer, photon mapping and radiosity follow a ray through mirrors and glass
     recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, PICTURING;
     /// Photons that photon mapping sends to all surfaces
     global_photons: PhotonCount = "1000000", "global-photons", "N", Render, Solution, PICTURING;
@@ -251,6 +253,18 @@ options! {
     photon_area: Option<Area> = "auto", "photon-area", "M2", Render, Solution, PICTURING;
     /// Rays by which photon mapping gathers indirect light anew where the camera looks; `0`: none, straight from the photons, blotchier
     final_gather: GatherRays = "256", "final-gather", "N", Render, View, PICTURING;
+    /// How radiosity is solved: `gather` (each patch collects from all others), `shoot` (the brightest patches shoot) or `stochastic` (all patches shoot rays; for plants); `auto`: `gather` up to 20,000 patches, beyond `stochastic`
+    solver: Option<Solver> = "auto", "solver", "NAME", Render, Solution, PICTURING;
+    /// How finely a patch looks around in radiosity: pixels along an edge of GroIMP's hemicube, or the root of four times as many rays
+    hemicube_pixels: HemicubePixels = "32", "hemicube-pixels", "N", Render, Solution, PICTURING;
+    /// Edge of the hemicube in metres: what is nearer than half of it is not seen; `auto`: next to nothing
+    hemicube_size: Option<Width> = "auto", "hemicube-size", "M", Render, Solution, PICTURING;
+    /// What form factors of radiosity come from: `rays`, `hemicube` (GroIMP's way) or `analytic` (closed forms between near patches, rays elsewhere)
+    form_factors: FormFactorMethod = "rays", "form-factors", "NAME", Render, Solution, PICTURING;
+    /// Patches of radiosity are split where light differs by more than this part of the mean light
+    subdivision_threshold: Threshold = "0.15", "subdivision-threshold", "X", Render, Solution, PICTURING;
+    /// How often they are split at most
+    subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, PICTURING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says

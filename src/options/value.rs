@@ -29,6 +29,8 @@ pub enum Renderer {
     Raytracer,
     /// Photon mapping: light is followed once from its sources and stored, for every camera.
     Photon,
+    /// Radiosity: what matt surfaces send each other, solved once on the surfaces, for every camera.
+    Radiosity,
 }
 
 /// How many photons, 0 to 10⁹.
@@ -169,11 +171,8 @@ impl OptionValue for Renderer {
             "path" => Ok(Self::Path),
             "raytracer" => Ok(Self::Raytracer),
             "photon" => Ok(Self::Photon),
-            "radiosity" => Err(
-                "`path`, `raytracer` or `photon` (radiosity is not built yet in this version)"
-                    .into(),
-            ),
-            _ => Err("`path`, `raytracer` or `photon`".into()),
+            "radiosity" => Ok(Self::Radiosity),
+            _ => Err("`path`, `raytracer`, `photon` or `radiosity`".into()),
         }
     }
 }

@@ -167,12 +167,16 @@ pub enum SolutionOrigin {
 }
 
 /// The light that all cameras share, as reports tell of it. All `None` for methods that have none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolutionFacts {
     /// Where it came from.
     pub origin: Option<SolutionOrigin>,
     /// Photons emitted and photons stored for it, whenever that was.
     pub photons: Option<(u64, u64)>,
+    /// Patches into which surfaces were cut for it.
+    pub patches: Option<u64>,
+    /// Part of all light that was still missing when it was left.
+    pub residual: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -199,7 +203,7 @@ pub struct Report<'a> {
     photons_emitted: Option<u64>,
     /// Photons stored for it.
     photons_stored: Option<u64>,
-    /// No method of this version has patches.
+    /// Patches into which radiosity cut the surfaces.
     patches: Option<u64>,
     /// No method of this version has a solver.
     solver_residual: Option<f64>,
@@ -346,6 +350,8 @@ impl<'a> Report<'a> {
             solves: u32::from(facts.origin == Some(SolutionOrigin::Made)),
             photons_emitted: facts.photons.map(|(emitted, _)| emitted),
             photons_stored: facts.photons.map(|(_, stored)| stored),
+            patches: facts.patches,
+            solver_residual: facts.residual,
             ..self
         }
     }

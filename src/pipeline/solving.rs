@@ -32,14 +32,15 @@ impl SolutionFiles {
     /// If it has not.
     pub fn check(&self, options: &Options) -> Result<(), Failure> {
         let has_solution = match options.renderer.value {
-            Renderer::Path | Renderer::Raytracer => false,
+            // What radiosity finds is not written to files, only kept from picture to picture.
+            Renderer::Path | Renderer::Raytracer | Renderer::Radiosity => false,
             Renderer::Photon => true,
         };
         if has_solution || (self.read.is_none() && self.save.is_none()) {
             return Ok(());
         }
         Err(Failure::Usage(
-            "`--solution` and `--save-solution` are for methods that solve the light once for all cameras: \
+            "`--solution` and `--save-solution` are for solutions that can be written to files: those of \
              `--renderer photon`"
                 .into(),
         ))
@@ -90,11 +91,18 @@ impl Studio<'_> {
                 target.write(world, &solution_file::encode(basis, &content)?)
             })?;
         }
-        let facts = match solution {
+        let facts = match &solution {
             Solution::Nothing => SolutionFacts::default(),
             Solution::Photons(_) => SolutionFacts {
                 origin: Some(origin),
                 photons: solution.photons(),
+                ..SolutionFacts::default()
+            },
+            Solution::Radiosity(solved) => SolutionFacts {
+                origin: Some(origin),
+                patches: Some(solved.patches),
+                residual: Some(solved.residual),
+                ..SolutionFacts::default()
             },
         };
         Ok(Solved { solution, facts })

@@ -11,7 +11,7 @@ use crate::film::{Filter, LinearImage, tone};
 use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
 use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
-    CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Raytracer,
+    CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Radiosity, Raytracer,
     RenderContext, RenderError, Solution, Unreadable,
 };
 use crate::options::Options;
@@ -71,6 +71,9 @@ impl Viewing<'_> {
         if let Method::Photon(photon_mapping) = &mut method {
             let memory = budget::memory(self.world, self.options);
             photon_mapping.most_stored = memory / BYTES_PER_PHOTON;
+        }
+        if let Method::Radiosity(radiosity) = &mut method {
+            radiosity.memory = budget::memory(self.world, self.options);
         }
         let solution = method
             .integrator()
@@ -340,6 +343,16 @@ fn method(options: &Options) -> Method {
             final_gather: options.final_gather.value.0,
             ..PhotonMapping::default()
         }),
+        Renderer::Radiosity => Method::Radiosity(Radiosity {
+            solver: options.solver.value,
+            hemicube_pixels: options.hemicube_pixels.value.0,
+            hemicube_size: options.hemicube_size.value.map(|size| size.0),
+            form_factors: options.form_factors.value,
+            subdivision_threshold: options.subdivision_threshold.value.0,
+            subdivision_depth: options.subdivision_depth.value.0,
+            max_depth: options.recursion_depth.value,
+            ..Radiosity::default()
+        }),
     }
 }
 
@@ -349,6 +362,16 @@ fn failure(error: &RenderError) -> Failure {
         RenderError::TooManyPhotons { n, most } => Failure::World(format!(
             "{n} photons would have to be stored, and there is memory for {most}: use fewer `--global-photons` or more \
              `--max-memory`"
+        )),
+        RenderError::TooManyPatches { n, most } => Failure::World(format!(
+            "radiosity would cut the surfaces into at least {n} patches, and there is memory for {most}: use more \
+             `--max-memory` or another `--renderer`"
+        )),
+        RenderError::TooManyFactors { needed, most } => Failure::World(format!(
+            "form factors would take {}, and there is memory for {}: use `--solver stochastic`, fewer \
+             `--hemicube-pixels` or more `--max-memory`",
+            budget::readable(*needed),
+            budget::readable(*most)
         )),
     }
 }

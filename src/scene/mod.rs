@@ -11,6 +11,7 @@
 //!   extents   where the surfaces of some materials are
 //!   areas     how much surface each organ has
 //!   digest    whether two worlds differ in more than light and colour
+//!   charts    faces with coordinates
 //! ```
 //! Groups within groups are never copied: a ray is carried into the frame of each instance it enters. A primitive of the
 //! world is therefore not stored anywhere; its number, a [`PrimitiveId`](crate::math::PrimitiveId), counts through all
@@ -45,6 +46,7 @@
 
 mod areas;
 mod bake;
+mod charts;
 pub mod description;
 mod digest;
 mod emitter;
@@ -60,6 +62,7 @@ mod surface;
 mod validate;
 mod walk;
 
+pub use charts::PlacedChart;
 pub use emitter::{Emitter, EmitterId, EmitterSample, TowardSample};
 pub use error::{Problem, SceneError};
 pub use extents::{Extents, Piece};

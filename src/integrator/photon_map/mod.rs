@@ -112,7 +112,7 @@ impl Integrator for PhotonMapping {
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         match solution {
             Solution::Photons(maps) => Ok(Box::new(self.look(scene, maps.clone(), context.seed))),
-            Solution::Nothing => self.prepare(scene, context),
+            Solution::Nothing | Solution::Radiosity(_) => self.prepare(scene, context),
         }
     }
 

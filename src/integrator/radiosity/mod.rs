@@ -1,0 +1,481 @@
+//! Radiosity: what surfaces send each other is solved once, on the surfaces, for all cameras.
+//!
+//! Source: [`CohenWallace1993`](crate::references#cohenwallace1993). What is solved and what not:
+//!
+//! - Surfaces are cut into patches, each with a front and a back, so that leaves reflect and let through. Solved is what matt surfaces
+//!   send to each other, for all channels at once.
+//! - Direct light of lamps, sky and shining surfaces is asked for at points of each patch, and again by each view at the point that
+//!   it sees: shadows are sharp however coarse the patches are, and nothing is counted twice.
+//! - Mirrors, glass and gloss take part: rays between patches go on through them, and so do rays of views. Light that *sources* send
+//!   through mirrors and glass onto matt surfaces is found by rays from patches alone: of lamps with extent and of the sky, but not of lamps
+//!   without extent and of the disk of the sun.
+//!
+//! ```text
+//! mesh      patches and elements         system      the equations, rows of form factors
+//! refine    smaller elements             gather      Gauss and Seidel
+//! vertices  between elements             shoot       progressive refinement
+//! carry     rays through mirrors, glass  stochastic  all patches at once, nothing stored
+//! source    what light sources give      rays        form factors by rays
+//! view      from the camera              hemicube    drawn onto half a cube
+//! polygon   between polygons, on paper   analytic    on paper where that holds
+//! ```
+//! Its errors are the size of patches, and noise of rays that is the same in every view.
+
+mod analytic;
+mod carry;
+mod gather;
+mod hemicube;
+mod mesh;
+mod polygon;
+mod rays;
+mod refine;
+mod shoot;
+mod source;
+mod stochastic;
+mod system;
+#[cfg(test)]
+mod tests;
+mod vertices;
+mod view;
+
+use super::medium::Bodies;
+use super::sources::Sources;
+use super::{Integrator, Progress, RadianceEstimator, RenderContext, RenderError};
+use crate::color::Rgb;
+use crate::math::functions::ln;
+use crate::scene::Scene;
+use analytic::NearForms;
+use carry::Carrier;
+use hemicube::Hemicubes;
+use mesh::{Mesh, NONE};
+use rayon::prelude::*;
+use rays::CosineRays;
+use refine::Refinement;
+use source::{Lighting, has_stray_light};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use system::{FormFactors, Patch, Row, Solved};
+use vertices::Vertices;
+use view::View;
+
+/// Bytes that a patch takes, with its faces, corners and light.
+const BYTES_PER_PATCH: u64 = 1024;
+
+/// Bytes that a factor of a row takes.
+const BYTES_PER_FACTOR: u64 = size_of::<(u32, f32)>() as u64;
+
+/// Hemicubes along each side of a cell.
+const CUBES: u32 = 2;
+
+/// Patches up to which rows are stored where nobody chooses a solver, and patches are split.
+const FEW_PATCHES: usize = 20_000;
+
+/// Part of all light that may be missing at the end.
+const TOLERANCE: f64 = 1e-3;
+
+/// Mirrors and glass after which a ray between patches is given up; chance ends almost all before.
+const LONGEST_WAY: u32 = 64;
+
+/// Steps in which progress of the solution is told.
+const STEPS: f64 = 1000.0;
+
+/// Width in coordinates of the smallest cells: their halves are still told apart.
+const TOO_SMALL_TO_SPLIT: f64 = 1e-6;
+
+/// How the equations are solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Each patch collects from all others, again and again; rows of form factors are stored.
+    Gather,
+    /// The brightest patches shoot what they have left; rows are stored while there is room.
+    Shoot,
+    /// All patches shoot rays, as many as they have light; nothing is stored.
+    Stochastic,
+}
+
+/// Where form factors come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FormFactorMethod {
+    /// Rays with the density of the cosine.
+    #[default]
+    Rays,
+    /// Hemicubes, GroIMP's method.
+    Hemicube,
+    /// Closed forms between flat patches that are near each other and wholly visible, rays elsewhere.
+    Analytic,
+}
+
+/// Settings of radiosity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Radiosity {
+    /// How the equations are solved; `None`: by gathering up to 20,000 patches, stochastically beyond.
+    pub solver: Option<Solver>,
+    /// Pixels along an edge of a hemicube; a row made of rays has a quarter of its square of them.
+    pub hemicube_pixels: u32,
+    /// Edge of the hemicube, metres: what is nearer than half of it is not drawn; `None`: very near.
+    pub hemicube_size: Option<f64>,
+    /// Where form factors come from; the stochastic solver uses them only for the elements.
+    pub form_factors: FormFactorMethod,
+    /// Difference of light over an element as wide as a patch beyond which it is split, as a part of the mean light.
+    pub subdivision_threshold: f64,
+    /// How often a patch is split at most.
+    pub subdivision_depth: u32,
+    /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
+    pub max_depth: u32,
+    /// Bytes that all of it may take.
+    pub memory: u64,
+}
+
+impl Default for Radiosity {
+    fn default() -> Self {
+        Self {
+            solver: None,
+            hemicube_pixels: 32,
+            hemicube_size: None,
+            form_factors: FormFactorMethod::Rays,
+            subdivision_threshold: 0.15,
+            subdivision_depth: 3,
+            max_depth: 8,
+            memory: 1 << 32,
+        }
+    }
+}
+
+impl Integrator for Radiosity {
+    fn prepare<'s>(
+        &self,
+        scene: &'s Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        let solution = self.solution(scene, context)?;
+        Ok(Box::new(self.look(scene, Arc::new(solution))))
+    }
+
+    fn solve(
+        &self,
+        scene: &Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<super::Solution, RenderError> {
+        let solution = self.solution(scene, context)?;
+        Ok(super::Solution::Radiosity(Arc::new(solution)))
+    }
+
+    fn view<'s>(
+        &self,
+        scene: &'s Scene,
+        solution: &super::Solution,
+        context: &RenderContext<'_>,
+    ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        match solution {
+            super::Solution::Radiosity(solution) => {
+                Ok(Box::new(self.look(scene, solution.clone())))
+            }
+            super::Solution::Nothing | super::Solution::Photons(_) => self.prepare(scene, context),
+        }
+    }
+}
+
+/// The light of all surfaces, whatever the camera.
+#[derive(Debug)]
+pub struct RadiositySolution {
+    mesh: Mesh,
+    vertices: Vertices,
+    /// Patches into which surfaces are cut.
+    pub patches: u64,
+    /// Part of all light that was still to be sent when the solver ended.
+    pub residual: f64,
+    /// Whether that is as little as it was to be: not so where nothing is ever lost.
+    pub is_converged: bool,
+}
+
+/// Patches with their light.
+struct Sent {
+    patches: Vec<Patch>,
+    solved: Solved,
+    /// Whether what was found for patches is the noisy result of shots rather than of rows.
+    is_shot: bool,
+}
+
+impl Radiosity {
+    fn look<'s>(&self, scene: &'s Scene, solution: Arc<RadiositySolution>) -> View<'s> {
+        View {
+            carrier: Carrier {
+                scene,
+                bodies: Bodies::new(scene),
+                max_depth: self.max_depth,
+            },
+            sources: Sources::new(scene),
+            solution,
+        }
+    }
+
+    fn solution(
+        &self,
+        scene: &Scene,
+        context: &RenderContext<'_>,
+    ) -> Result<RadiositySolution, RenderError> {
+        let carrier = Carrier {
+            scene,
+            bodies: Bodies::new(scene),
+            max_depth: LONGEST_WAY,
+        };
+        let sources = Sources::new(scene);
+        let mut mesh = self.mesh(scene)?;
+        let sent = self.solve_patches(&mesh, &carrier, &sources, context)?;
+        let irradiance = self.elements(&mut mesh, &sent, (&carrier, &sources), context);
+        if context.cancel.is_cancelled() {
+            return Err(RenderError::Cancelled { partial: None });
+        }
+        Ok(RadiositySolution {
+            vertices: Vertices::new(&mesh, &irradiance, size_of_scene(scene)),
+            patches: mesh.patches.len() as u64,
+            residual: sent.solved.residual,
+            is_converged: sent.solved.is_converged,
+            mesh,
+        })
+    }
+
+    /// Cuts the scene into as many patches as there is memory for.
+    fn mesh(&self, scene: &Scene) -> Result<Mesh, RenderError> {
+        let most = self.memory / BYTES_PER_PATCH;
+        let most = most.min(u64::from(u32::MAX) / 8);
+        Mesh::new(scene, most).map_err(|n| RenderError::TooManyPatches { n, most })
+    }
+
+    /// Rays of a row.
+    fn rays_per_row(&self) -> u32 {
+        (self.hemicube_pixels.saturating_mul(self.hemicube_pixels) / 4).max(1)
+    }
+
+    /// Finds what light sources give to patches, and what patches give to each other.
+    fn solve_patches(
+        &self,
+        mesh: &Mesh,
+        carrier: &Carrier<'_>,
+        sources: &Sources<'_>,
+        context: &RenderContext<'_>,
+    ) -> Result<Sent, RenderError> {
+        let patches = self.lighting(mesh, (carrier, sources), context).patches();
+        let solver = self.solver_for(&patches)?;
+        let solved = match solver {
+            Solver::Gather => {
+                let factors = self.factors(mesh, carrier, context.seed);
+                let rows = gathered_rows(&*factors, &patches, mesh, context);
+                gather::solve(&patches, &rows, TOLERANCE, |_| {
+                    !context.cancel.is_cancelled()
+                })
+            }
+            Solver::Shoot => {
+                let shots = shoot::Shots {
+                    factors: &*self.factors(mesh, carrier, context.seed),
+                    nodes: &mesh.patches,
+                    room: self.memory / 4,
+                };
+                shoot::solve(&patches, &shots, TOLERANCE, |left| tell(context, left))
+            }
+            Solver::Stochastic => {
+                let n_sides = sides_needed(&patches);
+                let rays = self.rays(mesh, carrier, context.seed);
+                let n_rays = n_sides * u64::from(rays.n);
+                stochastic::solve(&patches, &rays, n_rays, TOLERANCE, |left| {
+                    tell(context, left)
+                })
+            }
+        };
+        if context.cancel.is_cancelled() {
+            return Err(RenderError::Cancelled { partial: None });
+        }
+        Ok(Sent {
+            patches,
+            solved,
+            is_shot: solver != Solver::Gather,
+        })
+    }
+
+    fn lighting<'a, 's>(
+        &self,
+        mesh: &'a Mesh,
+        (carrier, sources): (&'a Carrier<'s>, &'a Sources<'s>),
+        context: &RenderContext<'a>,
+    ) -> Lighting<'a, 's> {
+        Lighting {
+            mesh,
+            carrier,
+            sources,
+            seed: context.seed,
+            n_stray: if has_stray_light(carrier, sources) {
+                self.rays_per_row()
+            } else {
+                0
+            },
+            cancel: context.cancel,
+        }
+    }
+
+    fn rays<'a, 's>(
+        &self,
+        mesh: &'a Mesh,
+        carrier: &'a Carrier<'s>,
+        seed: u64,
+    ) -> CosineRays<'a, 's> {
+        CosineRays {
+            mesh,
+            carrier,
+            seed,
+            n: self.rays_per_row(),
+        }
+    }
+
+    /// What form factors come from.
+    fn factors<'a>(
+        &self,
+        mesh: &'a Mesh,
+        carrier: &'a Carrier<'_>,
+        seed: u64,
+    ) -> Box<dyn FormFactors + 'a> {
+        let rays = self.rays(mesh, carrier, seed);
+        match self.form_factors {
+            FormFactorMethod::Rays => Box::new(rays),
+            FormFactorMethod::Hemicube => {
+                let (pixels, size) = (self.hemicube_pixels, self.hemicube_size);
+                Box::new(Hemicubes::new(mesh, carrier, seed, pixels, CUBES, size))
+            }
+            FormFactorMethod::Analytic => Box::new(NearForms::new(rays)),
+        }
+    }
+
+    /// Splits elements where light changes fast, and finds the light of all of them that views do not ask for, front and back by
+    /// node.
+    fn elements(
+        &self,
+        mesh: &mut Mesh,
+        solution: &Sent,
+        (carrier, sources): (&Carrier<'_>, &Sources<'_>),
+        context: &RenderContext<'_>,
+    ) -> Vec<[Rgb; 2]> {
+        let Sent {
+            patches, solved, ..
+        } = solution;
+        let gathered = |mesh: &Mesh, first: usize| {
+            let factors = self.factors(mesh, carrier, context.seed);
+            let lighting = self.lighting(mesh, (carrier, sources), context);
+            let light = |at: usize| {
+                let node = &mesh.nodes[at];
+                [0, 1].map(|side| {
+                    let is_wanted = node.children == NONE
+                        && patches[node.patch as usize].sides[side].is_needed();
+                    if !is_wanted || context.cancel.is_cancelled() {
+                        return Rgb::BLACK;
+                    }
+                    let row = factors.row(at as u32, side);
+                    row.gather(&solved.radiosity) + lighting.stray(at as u32, side)
+                })
+            };
+            (first..mesh.nodes.len())
+                .into_par_iter()
+                .map(light)
+                .collect()
+        };
+        let mut irradiance = vec![[Rgb::BLACK; 2]; mesh.nodes.len()];
+        if solution.is_shot && patches.len() <= FEW_PATCHES {
+            irradiance = gathered(mesh, 0);
+        } else {
+            for (at, (patch, node)) in patches.iter().zip(&mesh.patches).enumerate() {
+                irradiance[*node as usize] =
+                    [0, 1].map(|side| solved.irradiance[2 * at + side] + patch.sides[side].stray);
+            }
+        }
+        let refinement = Refinement {
+            threshold: self.subdivision_threshold,
+            depth: self.subdivision_depth,
+            most: (self.memory / BYTES_PER_PATCH).min(u64::from(u32::MAX) / 2) as usize,
+            size: size_of_scene(carrier.scene),
+        };
+        let mean = mean_irradiance(patches, solved);
+        if mean > 0.0 && patches.len() <= FEW_PATCHES {
+            refine::refine(mesh, &mut irradiance, &refinement, mean, gathered);
+        }
+        irradiance
+    }
+
+    /// The solver that is asked for, or that suits so many patches.
+    fn solver_for(&self, patches: &[Patch]) -> Result<Solver, RenderError> {
+        let per_row = u64::from(self.rays_per_row()).min(2 * patches.len() as u64);
+        let per_row = per_row * BYTES_PER_FACTOR + size_of::<Row>() as u64;
+        let needed = sides_needed(patches) * per_row;
+        let most = self.memory / 2;
+        match self.solver {
+            Some(Solver::Gather) if needed > most => {
+                Err(RenderError::TooManyFactors { needed, most })
+            }
+            Some(solver) => Ok(solver),
+            None if patches.len() > FEW_PATCHES || needed > most => Ok(Solver::Stochastic),
+            None => Ok(Solver::Gather),
+        }
+    }
+}
+
+/// Mean irradiance, direct light included, of all sides on which light does anything, mean over channels, W/m².
+fn mean_irradiance(patches: &[Patch], solved: &Solved) -> f64 {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for (at, light) in solved.irradiance.iter().enumerate() {
+        let (patch, side) = (&patches[at / 2], &patches[at / 2].sides[at % 2]);
+        if side.is_needed() {
+            sum += (side.source + *light).mean() * patch.area;
+            area += patch.area;
+        }
+    }
+    if area > 0.0 { sum / area } else { 0.0 }
+}
+
+/// Sides of patches on which light does anything.
+fn sides_needed(patches: &[Patch]) -> u64 {
+    let sides = patches.iter().flat_map(|patch| &patch.sides);
+    sides.filter(|side| side.is_needed()).count() as u64
+}
+
+/// The rows of all sides, in parallel, with progress.
+fn gathered_rows(
+    factors: &dyn FormFactors,
+    patches: &[Patch],
+    mesh: &Mesh,
+    context: &RenderContext<'_>,
+) -> Vec<Row> {
+    let total = sides_needed(patches);
+    let done = AtomicU64::new(0);
+    let row = |side: usize| {
+        let is_needed = patches[side / 2].sides[side % 2].is_needed();
+        if !is_needed || context.cancel.is_cancelled() {
+            return Row::default();
+        }
+        let row = factors.row(mesh.patches[side / 2], side % 2);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(64) || done == total {
+            (context.progress)(Progress { done, total });
+        }
+        row
+    };
+    (0..2 * patches.len()).into_par_iter().map(row).collect()
+}
+
+/// Tells how much light is left to shoot, as a share of the way there; whether to go on.
+fn tell(context: &RenderContext<'_>, left: f64) -> bool {
+    let share = (ln(left.max(TOLERANCE)) / ln(TOLERANCE)).clamp(0.0, 1.0);
+    (context.progress)(Progress {
+        done: (share * STEPS) as u64,
+        total: STEPS as u64,
+    });
+    !context.cancel.is_cancelled()
+}
+
+/// How large a scene is, metres; 1 where there is nothing but planes.
+fn size_of_scene(scene: &Scene) -> f64 {
+    let bounds = scene.bounds();
+    if bounds.is_empty() {
+        return 1.0;
+    }
+    match bounds.diagonal().length() {
+        size if size > 0.0 => size,
+        _ => 1.0,
+    }
+}

@@ -1,0 +1,92 @@
+//! Smaller elements where light changes fast.
+//!
+//! [`CohenGreenberg1986`](crate::references#cohengreenberg1986): patches stay as they are and go on sending light as a whole; only the new
+//! elements collect it anew. An element is split where the light between its corners differs by more than a part of the mean
+//! light of the scene, weighed by its width. Neighbours differ by one split at most.
+
+use super::mesh::{Mesh, NONE};
+use super::vertices::{Vertices, crowded};
+use crate::color::Rgb;
+
+/// When elements are split.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refinement {
+    /// Difference over an element as wide as a patch, as a part of the mean light of the scene.
+    pub(super) threshold: f64,
+    /// How often a patch is split at most.
+    pub(super) depth: u32,
+    /// Cells there may be.
+    pub(super) most: usize,
+    /// Size of the scene, metres.
+    pub(super) size: f64,
+}
+
+/// Splits elements and finds the light of the new ones by `gathered`, of nodes from a number on, front and back. `total` is the
+/// mean irradiance that counts as the light of the scene. Gives whether it stopped because there were too many.
+pub(super) fn refine(
+    mesh: &mut Mesh,
+    irradiance: &mut Vec<[Rgb; 2]>,
+    refinement: &Refinement,
+    total: f64,
+    gathered: impl Fn(&Mesh, usize) -> Vec<[Rgb; 2]>,
+) -> bool {
+    let areas = mesh
+        .patches
+        .iter()
+        .map(|node| mesh.nodes[*node as usize].area);
+    let mean_area = areas.sum::<f64>() / mesh.patches.len().max(1) as f64;
+    for _ in 0..refinement.depth {
+        let vertices = Vertices::new(mesh, irradiance, refinement.size);
+        let wanted: Vec<u32> = mesh
+            .elements()
+            .filter(|node| {
+                let own = irradiance[*node as usize];
+                let width = (mesh.nodes[*node as usize].area / mean_area).sqrt();
+                let limit = refinement.threshold * total;
+                !mesh.is_tiny(*node) && range(&vertices, *node, own) * width > limit
+            })
+            .collect();
+        if wanted.is_empty() {
+            return false;
+        }
+        let start = mesh.nodes.len();
+        if start + 4 * wanted.len() > refinement.most {
+            return true;
+        }
+        wanted.into_iter().for_each(|node| mesh.split(node));
+        balance(mesh, refinement);
+        irradiance.extend(gathered(mesh, start));
+    }
+    false
+}
+
+/// Splits what has neighbours more than one split smaller.
+fn balance(mesh: &mut Mesh, refinement: &Refinement) {
+    loop {
+        let large: Vec<u32> = crowded(mesh, refinement.size)
+            .into_iter()
+            .filter(|node| !mesh.is_tiny(*node))
+            .collect();
+        if large.is_empty() || mesh.nodes.len() + 4 * large.len() > refinement.most {
+            return;
+        }
+        for node in large {
+            if mesh.nodes[node as usize].children == NONE {
+                mesh.split(node);
+            }
+        }
+    }
+}
+
+/// The largest difference, over an element, of the light of either side.
+fn range(vertices: &Vertices, node: u32, own: [Rgb; 2]) -> f64 {
+    let of_side = |side: usize| {
+        let corners = vertices.of(node).map(|corner| corner[side].mean());
+        let start = own[side].mean();
+        let (low, high) = corners.fold((start, start), |(low, high), light| {
+            (low.min(light), high.max(light))
+        });
+        high - low
+    };
+    of_side(0).max(of_side(1))
+}

@@ -1,0 +1,268 @@
+//! What patches get from light sources, and what they do with light.
+
+use super::carry::{Carrier, frame_of, lobes_of, survivor};
+use super::mesh::{Mesh, Node};
+use super::rays::{cell_point, cosine_ray};
+use super::system::{Patch, PatchSide};
+use crate::color::Rgb;
+use crate::integrator::mis::power_heuristic;
+use crate::integrator::path::Strategies;
+use crate::integrator::sources::{Reach, Shading, Sources, receiver};
+use crate::integrator::{CancelToken, RayCounts};
+use crate::light::Receiver;
+use crate::material::{LobeKind, Material, Scattering, ScatteringFrame, Side, Transport};
+use crate::math::{Ray, rng};
+use crate::sampler::{Sampler, SamplerKind, Use};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// What the random numbers are for.
+const DIRECT: u64 = 0x6469_7265;
+const STRAY: u64 = 0x7374_7261;
+
+/// Points of a cell at which light sources are asked.
+const LIGHT_POINTS: u32 = 16;
+
+/// Points along each side of a cell at which pictures on it are looked at.
+const PICTURE_POINTS: u32 = 8;
+
+/// Pads of glossy parts: their questions to lights must not be those of the matt part.
+const GLOSSY: u32 = 1 << 20;
+
+/// Asks light sources for patches.
+pub(super) struct Lighting<'a, 's> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) carrier: &'a Carrier<'s>,
+    pub(super) sources: &'a Sources<'s>,
+    pub(super) seed: u64,
+    /// Rays by which light is looked for that sources are not asked for; 0 where there is none.
+    pub(super) n_stray: u32,
+    /// Once it is set, nothing more is asked.
+    pub(super) cancel: &'a CancelToken,
+}
+
+/// Whether light may reach matt surfaces on ways on which no source is asked for it: off mirrors, glass and gloss, or from land
+/// below the horizon and planes that shine.
+pub(super) fn has_stray_light(carrier: &Carrier<'_>, sources: &Sources<'_>) -> bool {
+    let is_plain = |material: &Material| {
+        let mut lobes = material.lobes.iter();
+        lobes.all(|lobe| lobe.kind == LobeKind::Through)
+    };
+    let materials = carrier.scene.materials();
+    let shines = carrier.scene.stats().planes > 0 && materials.iter().any(Material::is_emitter);
+    let below = [
+        DVec3::NEG_Z,
+        DVec3::new(0.6, 0.0, -0.8),
+        DVec3::new(-0.8, 0.0, -0.6),
+    ];
+    let is_unasked = |w: DVec3| {
+        !sources.sky_radiance(w).is_black() && sources.sky_pdf_solid_angle(w, Reach::First) <= 0.0
+    };
+    shines || !materials.iter().all(is_plain) || below.into_iter().any(is_unasked)
+}
+
+impl Lighting<'_, '_> {
+    /// All patches, with what light sources give them.
+    pub(super) fn patches(&self) -> Vec<Patch> {
+        let patch = |node: &u32| {
+            let at = &self.mesh.nodes[*node as usize];
+            let optics = self.optics(at);
+            let sides = [0, 1].map(|side| {
+                let mut own = PatchSide {
+                    reflectance: optics[side].reflectance,
+                    transmittance: optics[side].transmittance,
+                    ..PatchSide::default()
+                };
+                if own.is_needed() && !self.cancel.is_cancelled() {
+                    own.stray = self.stray(*node, side);
+                    own.source = self.direct(*node, side) + own.stray;
+                }
+                own
+            });
+            Patch {
+                area: at.area,
+                sides,
+            }
+        };
+        self.mesh.patches.par_iter().map(patch).collect()
+    }
+
+    /// What the matt part of a cell does, mean over the cell.
+    fn optics(&self, node: &Node) -> [Side; 2] {
+        let scene = self.carrier.scene;
+        let material = scene.material(self.mesh.charts[node.cell.chart as usize].material);
+        if material.pictures.is_none() {
+            return material.sides;
+        }
+        let n = f64::from(PICTURE_POINTS);
+        let mut sum = [Side::default(); 2];
+        for k in 0..PICTURE_POINTS * PICTURE_POINTS {
+            let step = DVec2::new(f64::from(k % PICTURE_POINTS), f64::from(k / PICTURE_POINTS));
+            let u = (step + DVec2::splat(0.5)) / n;
+            let at = cell_point(self.mesh, self.carrier, &node.cell, 0, u);
+            let sides = scene.optics(&at.point).scattering.sides;
+            for (sum, side) in sum.iter_mut().zip(sides) {
+                sum.reflectance += side.reflectance / (n * n);
+                sum.transmittance += side.transmittance / (n * n);
+            }
+        }
+        sum
+    }
+
+    /// Irradiance straight from light sources, mean over a side of a cell, W/m².
+    pub(super) fn direct(&self, node: u32, side: usize) -> Rgb {
+        let white = Side {
+            reflectance: Rgb::WHITE,
+            transmittance: Rgb::BLACK,
+        };
+        let stream = rng::hash(&[self.seed, DIRECT, u64::from(node), side as u64]);
+        let cell = &self.mesh.nodes[node as usize].cell;
+        let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
+        let mut rays = RayCounts::default();
+        for index in 0..LIGHT_POINTS {
+            let mut sampler = Sampler::new(SamplerKind::OwenSobol, stream, index);
+            let at = sampler.point(Use::Direction);
+            let at = cell_point(self.mesh, self.carrier, cell, side, at);
+            sampler.start_vertex(1);
+            let wo = if side == 0 {
+                at.point.normal_g
+            } else {
+                -at.point.normal_g
+            };
+            let media = self.carrier.bodies.around(at.point.spawn_ray(wo).origin);
+            let shading = Shading {
+                point: &at.point,
+                frame: &ScatteringFrame {
+                    normal_g: at.point.normal_g,
+                    normal_s: at.point.normal_g,
+                },
+                scattering: &Scattering {
+                    sides: [white; 2],
+                    lobes: &[],
+                },
+                wo,
+                absorption: [media.absorption(); 2],
+                advice: None,
+            };
+            let ways = Strategies::LightsOnly;
+            let radiance = self
+                .sources
+                .direct(&shading, Reach::First, ways, &sampler, &mut rays);
+            sum += radiance * (PI * at.weight);
+            weights += at.weight;
+        }
+        sum / weights
+    }
+
+    /// Irradiance of a side of a cell from sources on ways on which they are not asked, W/m².
+    pub(super) fn stray(&self, node: u32, side: usize) -> Rgb {
+        let stream = rng::hash(&[self.seed, STRAY, u64::from(node), side as u64]);
+        let cell = &self.mesh.nodes[node as usize].cell;
+        let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
+        let mut rays = RayCounts::default();
+        for index in 0..self.n_stray {
+            let mut sampler = Sampler::new(SamplerKind::OwenSobol, stream, index);
+            let at = sampler.point(Use::Choice);
+            let at = cell_point(self.mesh, self.carrier, cell, side, at);
+            let ray = cosine_ray(&at.point, side, sampler.point(Use::Direction));
+            sum += self.stray_radiance(&ray, &mut sampler, &mut rays) * (PI * at.weight);
+            weights += at.weight;
+        }
+        if weights > 0.0 {
+            sum / weights
+        } else {
+            Rgb::BLACK
+        }
+    }
+
+    /// Radiance along a ray from sources that nobody asks for it; without the disk of the sun, which hardly any ray would meet.
+    fn stray_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb {
+        let carrier = self.carrier;
+        let mut media = carrier.bodies.around(ray.origin);
+        let mut ray = *ray;
+        let (mut radiance, mut throughput, mut compression) = (Rgb::BLACK, Rgb::WHITE, 1.0);
+        let mut last = Last::Straight(Receiver {
+            position: ray.origin,
+            normal: None,
+            is_two_sided: true,
+        });
+        for depth in 0..=carrier.max_depth {
+            sampler.start_vertex(depth + 1);
+            let way = carrier.follow(&ray, &media, sampler, rays);
+            throughput *= way.weight;
+            let Some(met) = way.end else {
+                let pdf = || {
+                    self.sources
+                        .sky_pdf_solid_angle(ray.direction, Reach::First)
+                };
+                let sky = self.sources.sky_radiance(ray.direction);
+                return radiance + throughput * sky * last.share(&|_| pdf());
+            };
+            let emission = met.optics.emission[usize::from(!met.point.is_front)];
+            if !emission.is_black() {
+                let ask = |from: &Receiver| {
+                    let sources = self.sources;
+                    sources.emitter_pdf_solid_angle(&met.point, from, Reach::First)
+                };
+                radiance += throughput * emission * last.share(&ask);
+            }
+            if met.optics.scattering.is_matt() {
+                return radiance;
+            }
+            let (wo, frame) = (-ray.direction, frame_of(&met.point));
+            let lobes = lobes_of(&met.optics);
+            sampler.start_vertex(GLOSSY + depth);
+            if lobes.is_smooth() {
+                let beyond = carrier.bodies.beyond(&media, &met.point, &frame, wo);
+                let shading = Shading {
+                    point: &met.point,
+                    frame: &frame,
+                    scattering: &lobes,
+                    wo,
+                    absorption: [media.absorption(), beyond],
+                    advice: None,
+                };
+                let ways = Strategies::Both;
+                radiance += throughput
+                    * self
+                        .sources
+                        .direct(&shading, Reach::First, ways, sampler, rays);
+            }
+            let transport = Transport::Radiance;
+            let onward = carrier.scatter(&met, wo, &mut media, transport, sampler);
+            let Some(onward) = onward else { break };
+            compression *= onward.compression;
+            let left = survivor(throughput * onward.weight, compression, depth, sampler);
+            let Some(left) = left else { break };
+            throughput = left;
+            last = match onward.pdf_solid_angle {
+                None => Last::Mirrored,
+                Some(pdf) => Last::Glossy(receiver(&met.point, &frame, &lobes, wo), pdf),
+            };
+            ray = onward.ray;
+        }
+        radiance
+    }
+}
+
+/// How a ray came to where it shines.
+enum Last {
+    /// Straight from a matt surface, which asked for all light that can be asked for.
+    Straight(Receiver),
+    /// From where nobody asks.
+    Mirrored,
+    /// From where light is asked for as well; with the density per steradian of the ray.
+    Glossy(Receiver, f64),
+}
+
+impl Last {
+    /// The part of light at the end of the ray that counts, given the density with which it is asked for.
+    fn share(&self, asked: &dyn Fn(&Receiver) -> f64) -> f64 {
+        match self {
+            Self::Straight(from) if asked(from) > 0.0 => 0.0,
+            Self::Straight(_) | Self::Mirrored => 1.0,
+            Self::Glossy(from, pdf) => power_heuristic(*pdf, asked(from)),
+        }
+    }
+}
