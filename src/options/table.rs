@@ -261,7 +261,7 @@ options! {
     hemicube_size: Option<Width> = "auto", "hemicube-size", "M", Render, Solution, PICTURING;
     /// What form factors of radiosity come from: `rays`, `hemicube` (GroIMP's way) or `analytic` (closed forms between near patches, rays elsewhere)
     form_factors: FormFactorMethod = "rays", "form-factors", "NAME", Render, Solution, PICTURING;
-    /// Patches of radiosity are split where light differs by more than this part of the mean light
+    /// Patches of radiosity are split where light differs over them by more than this part of it
     subdivision_threshold: Threshold = "0.15", "subdivision-threshold", "X", Render, Solution, PICTURING;
     /// How often they are split at most
     subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, PICTURING;

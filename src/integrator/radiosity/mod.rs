@@ -64,6 +64,9 @@ const BYTES_PER_PATCH: u64 = 1024;
 /// Bytes that a factor of a row takes.
 const BYTES_PER_FACTOR: u64 = size_of::<(u32, f32)>() as u64;
 
+/// Part of the mean light of a scene: where there is less, differences are compared with so much.
+const DARKEST: f64 = 0.125;
+
 /// Hemicubes along each side of a cell.
 const CUBES: u32 = 2;
 
@@ -116,7 +119,7 @@ pub struct Radiosity {
     pub hemicube_size: Option<f64>,
     /// Where form factors come from; the stochastic solver uses them only for the elements.
     pub form_factors: FormFactorMethod,
-    /// Difference of light over an element as wide as a patch beyond which it is split, as a part of the mean light.
+    /// Difference of light over an element as wide as a patch beyond which it is split, as a part of the light there.
     pub subdivision_threshold: f64,
     /// How often a patch is split at most.
     pub subdivision_depth: u32,
@@ -391,9 +394,9 @@ impl Radiosity {
             most: (self.memory / BYTES_PER_PATCH).min(u64::from(u32::MAX) / 2) as usize,
             size: size_of_scene(carrier.scene),
         };
-        let mean = mean_irradiance(patches, solved);
-        if mean > 0.0 && patches.len() <= FEW_PATCHES {
-            refine::refine(mesh, &mut irradiance, &refinement, mean, gathered);
+        if patches.len() <= FEW_PATCHES {
+            let light = light_of(patches, solved);
+            refine::refine(mesh, &mut irradiance, &refinement, &light, gathered);
         }
         irradiance
     }
@@ -415,17 +418,26 @@ impl Radiosity {
     }
 }
 
-/// Mean irradiance, direct light included, of all sides on which light does anything, mean over channels, W/m².
-fn mean_irradiance(patches: &[Patch], solved: &Solved) -> f64 {
-    let (mut sum, mut area) = (0.0, 0.0);
-    for (at, light) in solved.irradiance.iter().enumerate() {
-        let (patch, side) = (&patches[at / 2], &patches[at / 2].sides[at % 2]);
-        if side.is_needed() {
-            sum += (side.source + *light).mean() * patch.area;
-            area += patch.area;
-        }
-    }
-    if area > 0.0 { sum / area } else { 0.0 }
+/// The light of each patch that differences on it are compared with: irradiance of its brighter side, direct light included, mean
+/// over channels, but at least a part of the mean of all; W/m².
+fn light_of(patches: &[Patch], solved: &Solved) -> Vec<f64> {
+    let light = |(at, patch): (usize, &Patch)| {
+        let side = |side: usize| {
+            let total = patch.sides[side].source + solved.irradiance[2 * at + side];
+            total.mean()
+        };
+        side(0).max(side(1))
+    };
+    let mut all: Vec<f64> = patches.iter().enumerate().map(light).collect();
+    let areas = patches.iter().map(|patch| patch.area);
+    let sum: f64 = all
+        .iter()
+        .zip(areas.clone())
+        .map(|(light, area)| light * area)
+        .sum();
+    let least = DARKEST * sum / areas.sum::<f64>();
+    all.iter_mut().for_each(|light| *light = light.max(least));
+    all
 }
 
 /// Sides of patches on which light does anything.

@@ -1,8 +1,8 @@
 //! Smaller elements where light changes fast.
 //!
 //! [`CohenGreenberg1986`](crate::references#cohengreenberg1986): patches stay as they are and go on sending light as a whole; only the new
-//! elements collect it anew. An element is split where the light between its corners differs by more than a part of the mean
-//! light of the scene, weighed by its width. Neighbours differ by one split at most.
+//! elements collect it anew. An element is split where the light between its corners differs by more than a part of the light of its
+//! patch, weighed by its width. Neighbours differ by one split at most.
 
 use super::mesh::{Mesh, NONE};
 use super::vertices::{Vertices, crowded};
@@ -11,7 +11,7 @@ use crate::color::Rgb;
 /// When elements are split.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Refinement {
-    /// Difference over an element as wide as a patch, as a part of the mean light of the scene.
+    /// Difference over an element as wide as a patch, as a part of the light of its patch.
     pub(super) threshold: f64,
     /// How often a patch is split at most.
     pub(super) depth: u32,
@@ -21,15 +21,15 @@ pub(super) struct Refinement {
     pub(super) size: f64,
 }
 
-/// Splits elements and finds the light of the new ones by `gathered`, of nodes from a number on, front and back. `total` is the
-/// mean irradiance that counts as the light of the scene. Gives whether it stopped because there were too many.
+/// Splits elements and finds the light of the new ones by `gathered`, of nodes from a number on, front and back. `light` tells the
+/// light of each patch that differences are compared with, W/m². Stops where there would be too many.
 pub(super) fn refine(
     mesh: &mut Mesh,
     irradiance: &mut Vec<[Rgb; 2]>,
     refinement: &Refinement,
-    total: f64,
+    light: &[f64],
     gathered: impl Fn(&Mesh, usize) -> Vec<[Rgb; 2]>,
-) -> bool {
+) {
     let areas = mesh
         .patches
         .iter()
@@ -41,23 +41,23 @@ pub(super) fn refine(
             .elements()
             .filter(|node| {
                 let own = irradiance[*node as usize];
-                let width = (mesh.nodes[*node as usize].area / mean_area).sqrt();
-                let limit = refinement.threshold * total;
+                let at = &mesh.nodes[*node as usize];
+                let width = (at.area / mean_area).sqrt();
+                let limit = refinement.threshold * light[at.patch as usize];
                 !mesh.is_tiny(*node) && range(&vertices, *node, own) * width > limit
             })
             .collect();
         if wanted.is_empty() {
-            return false;
+            return;
         }
         let start = mesh.nodes.len();
         if start + 4 * wanted.len() > refinement.most {
-            return true;
+            return;
         }
         wanted.into_iter().for_each(|node| mesh.split(node));
         balance(mesh, refinement);
         irradiance.extend(gathered(mesh, start));
     }
-    false
 }
 
 /// Splits what has neighbours more than one split smaller.
