@@ -10,7 +10,7 @@
 mod room;
 
 use glam::{DAffine3, DQuat, DVec3};
-use room::{Room, at, even_sky, gray, square};
+use room::{Room, at, gray, square};
 use std::f64::consts::PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;
@@ -19,7 +19,7 @@ use understory::integrator::{
     CancelToken, Integrator, Path, RadianceEstimator, Radiosity, RayCounts, RenderContext,
     RenderError,
 };
-use understory::light::{Environment, Light, SunDisk};
+use understory::light::Light;
 use understory::material::Material;
 use understory::math::angle::Angle;
 use understory::math::{Ray, rng};
@@ -49,7 +49,7 @@ fn seen(estimator: &dyn RadianceEstimator, ray: Ray, n: u32) -> Rgb {
 
 /// Mean radiance seen from a point in directions spread over a cone round `toward`.
 fn looked(estimator: &dyn RadianceEstimator, from: DVec3, toward: DVec3, samples: u32) -> Rgb {
-    let n = 8;
+    let n = 12;
     let side = toward.any_orthonormal_vector() * 0.7 / f64::from(n);
     let up = toward.cross(side);
     let rays = (0..n * n).map(|k| {
@@ -99,8 +99,6 @@ fn assert_alike(what: &str, found: Rgb, expected: Rgb, limit: f64) {
 fn compare(what: &str, scene: &Scene, solver: Option<Solver>) {
     let radiosity = Radiosity {
         solver,
-        hemicube_pixels: 16,
-        subdivision_depth: 1,
         ..Radiosity::default()
     };
     let solved = prepared(&radiosity, scene);
@@ -108,7 +106,7 @@ fn compare(what: &str, scene: &Scene, solver: Option<Solver>) {
     for (place, toward) in [("up", DVec3::Z), ("down", DVec3::NEG_Z)] {
         let from = DVec3::new(-0.4, -0.3, 0.0);
         let found = looked(&*solved, from, toward, 4);
-        let expected = looked(&*traced, from, toward, 128);
+        let expected = looked(&*traced, from, toward, 256);
         assert_alike(&format!("{what}, {place}"), found, expected, 0.04);
     }
 }
@@ -142,150 +140,6 @@ fn lamps_without_extent_give_the_light_they_give_others() {
     ];
     for (name, lamp) in lamps {
         compare(name, &chamber().lit_by(lamp).build(), None);
-    }
-}
-
-/// Sun and sky come in where a wall is missing: from the right.
-#[test]
-fn sun_and_sky_light_a_room_through_its_window() {
-    let white = || Material::lambert(gray(0.7));
-    let open = || {
-        Room::default()
-            .with(square(1.0), at(0.0, 0.0, -1.0), white())
-            .with(
-                square(1.0),
-                at(0.0, 0.0, 1.0) * DAffine3::from_rotation_x(PI),
-                white(),
-            )
-            .with(
-                square(1.0),
-                at(-1.0, 0.0, 0.0) * DAffine3::from_rotation_y(PI / 2.0),
-                Material::lambert(Rgb::new(0.2, 0.7, 0.3)),
-            )
-    };
-    let sun = SunDisk::clear(Angle::deg(90.0), Angle::deg(35.0), 3.0);
-    let sunny = Environment {
-        sun,
-        ..Environment::default()
-    };
-    compare("sun", &open().under(sunny).build(), None);
-    compare("sky", &open().under(even_sky(1.0)).build(), None);
-}
-
-/// Leaves that let light through, over soil without end, under an even sky: seen from above and from below. Leaves are smaller than
-/// the gaps between them: in thickets the light on a patch differs from that on the part of it that is seen.
-#[test]
-fn a_canopy_is_as_the_path_tracer_sees_it() {
-    let mut room = Room::default().with(
-        Shape::Plane,
-        at(0.0, 0.0, -0.6),
-        Material::lambert(gray(0.3)),
-    );
-    let number = |k: u64, what: u64| rng::unit_f64(rng::hash(&[k, what])) - 0.5;
-    for k in 0..120 {
-        let place = DVec3::new(number(k, 0), number(k, 1), number(k, 2)) * 0.9;
-        let turn = DQuat::from_euler(
-            glam::EulerRot::XYZ,
-            number(k, 3),
-            number(k, 4),
-            number(k, 5),
-        );
-        let place = DAffine3::from_rotation_translation(turn, place);
-        room = room.with(square(0.04), place, Material::leaf(gray(0.45), gray(0.4)));
-    }
-    let scene = room.under(even_sky(1.0)).build();
-    let traced = prepared(&Path::default(), &scene);
-    for solver in [Solver::Gather, Solver::Stochastic] {
-        let solved = prepared(
-            &Radiosity {
-                solver: Some(solver),
-                hemicube_pixels: 16,
-                ..Radiosity::default()
-            },
-            &scene,
-        );
-        for (from, toward) in [(DVec3::Z * 1.5, DVec3::NEG_Z), (DVec3::Z * -0.55, DVec3::Z)] {
-            let found = looked(&*solved, from, toward, 16);
-            let expected = looked(&*traced, from, toward, 256);
-            assert_alike(&format!("{solver:?} {toward}"), found, expected, 0.04);
-        }
-    }
-}
-
-/// Endless leaves over soil under an even sky reflect what the table says, to 2 %: light sources are asked at 16 points only.
-#[test]
-fn stacks_of_leaves_reflect_what_they_should() {
-    let table = include_str!("refdata/infinite_sheet_stack.csv");
-    let rows = table.lines().filter(|line| !line.starts_with('#')).skip(1);
-    let mut n_rows = 0;
-    for row in rows {
-        let numbers: Vec<f64> = row.split(',').map_while(|x| x.parse().ok()).collect();
-        let [n, rho, tau, soil, back] = numbers[..5] else {
-            panic!("{row}")
-        };
-        let mut room =
-            Room::default().with(Shape::Plane, at(0., 0., 0.), Material::lambert(gray(soil)));
-        for k in 1..=n as u32 {
-            let leaf = Material::leaf(gray(rho), gray(tau));
-            room = room.with(Shape::Plane, at(0., 0., f64::from(k)), leaf);
-        }
-        let scene = room.under(even_sky(1.0)).build();
-        for solver in [Solver::Gather, Solver::Shoot, Solver::Stochastic] {
-            let radiosity = Radiosity {
-                solver: Some(solver),
-                hemicube_pixels: 64,
-                ..Radiosity::default()
-            };
-            let solved = prepared(&radiosity, &scene);
-            let down = Ray::new(DVec3::Z * (n + 1.0), DVec3::new(0.3, 0.2, -1.0).normalize());
-            let found = seen(&*solved, down, 1024).g;
-            if back > 0.0 {
-                assert!(
-                    (found / back - 1.0).abs() < 0.02,
-                    "{solver:?} {row}: {found}"
-                );
-            } else {
-                assert!(found < 1e-9, "{solver:?} {row}: {found}");
-            }
-        }
-        n_rows += 1;
-    }
-    assert!(n_rows >= 14, "{n_rows}");
-}
-
-/// Mirrors take part: a room with one is as the path tracer sees it, on the floor before it and in it.
-#[test]
-fn mirrors_take_part() {
-    let lamp = Material::lambert(Rgb::BLACK).emitting(gray(20.0), Rgb::BLACK);
-    let down = at(0.0, 0.0, 0.98) * DAffine3::from_rotation_x(PI);
-    let mirror = at(0.0, 0.99, 0.0) * DAffine3::from_rotation_x(PI / 2.0);
-    let scene = chamber()
-        .with(square(0.3), down, lamp)
-        .with(square(0.9), mirror, Material::mirror(gray(0.9)))
-        .build();
-    compare("mirror", &scene, Some(Solver::Gather));
-    compare("mirror", &scene, Some(Solver::Stochastic));
-}
-
-#[test]
-fn pictures_do_not_depend_on_threads() {
-    let lamp = Light::point(DVec3::new(0.0, 0.0, 0.4), gray(30.0));
-    let scene = chamber().lit_by(lamp).build();
-    for solver in [Solver::Gather, Solver::Shoot, Solver::Stochastic] {
-        let radiosity = Radiosity {
-            solver: Some(solver),
-            hemicube_pixels: 4,
-            ..Radiosity::default()
-        };
-        let pictures = [1, 3, 8].map(|n| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-            pool.unwrap().install(|| {
-                let solved = prepared(&radiosity, &scene);
-                looked(&*solved, DVec3::new(-0.4, -0.3, 0.0), DVec3::Z, 1)
-            })
-        });
-        assert!(pictures.iter().all(|picture| *picture == pictures[0]));
-        assert!(pictures[0].g > 0.0);
     }
 }
 
