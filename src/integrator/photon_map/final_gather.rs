@@ -31,7 +31,7 @@ const FIRST_VERTEX: u32 = 1 << 22;
 const VERTICES: u32 = 1 << 8;
 
 /// Rays of the cache for each ray of a sample of the picture: samples of a pixel add up.
-const RAYS_PER_OWN: u32 = 32;
+const RAYS_PER_OWN: u32 = 128;
 
 /// How far above a place its surface is looked for, in spacings of the places, which are stored with 24 bits.
 const LIFT: f64 = 0.02;
