@@ -131,6 +131,10 @@
 //! L. Hosek, A. Wilkie: An Analytic Model for Full Spectral Sky-Dome Radiance. ACM Transactions on Graphics 31(4), 2012.
 //! <https://doi.org/10.1145/2185520.2185591>
 //!
+//! # Hart1968
+//! P. E. Hart, N. J. Nilsson, B. Raphael: A Formal Basis for the Heuristic Determination of Minimum Cost Paths. IEEE Transactions
+//! on Systems Science and Cybernetics 4(2), 1968. <https://doi.org/10.1109/TSSC.1968.300136>
+//!
 //! # Isobmff
 //! ISO/IEC 14496-12: Information technology, Coding of audio-visual objects, Part 12: ISO base media file format.
 //!

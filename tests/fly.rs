@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "support/opened.rs"]
+mod opened;
+
 use assert_cmd::Command;
 use image::AnimationDecoder;
 use image::codecs::{gif::GifDecoder, png::PngDecoder, webp::WebPDecoder};
@@ -510,4 +513,162 @@ fn flicker_is_measured_and_told() {
         .replace("-o f", "-o g");
     let told = bench.succeed(&still);
     assert!(told.contains("flicker 0.00 of 255"), "{told}");
+}
+
+#[test]
+fn a_path_is_drawn_on_a_map_and_frames_on_a_sheet() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --orbit --flight-frames 6 {SMALL}");
+    bench.succeed(&format!("{fly} --plan plan.png"));
+    let map = image::load_from_memory(&bench.bytes("plan.png"))
+        .unwrap()
+        .into_rgb8();
+    assert!(map.width() >= 700 || map.height() >= 700);
+    let way = map
+        .pixels()
+        .filter(|pixel| pixel.0 == [200, 30, 30])
+        .count();
+    assert!(way > 500, "{way} pixels of the way");
+    bench.succeed(&format!("{fly} -o f --sheet sheet.png"));
+    let sheet = image::load_from_memory(&bench.bytes("sheet.png"))
+        .unwrap()
+        .into_rgb8();
+    assert_eq!(sheet.dimensions(), (5 * 36 + 4, 2 * 28 + 4));
+    let first = image::load_from_memory(&bench.bytes(&frame("f", 0)))
+        .unwrap()
+        .into_rgb8();
+    assert_eq!(sheet.get_pixel(4 + 9, 4 + 7), first.get_pixel(9, 7));
+}
+
+#[test]
+fn flights_over_and_through_keep_away_from_what_stands_there() {
+    let bench = Bench::new();
+    bench.write(
+        "m.rgg",
+        "protected void init() [ Axiom ==> [Plane] for (int i : -9:9) ([Translate(2 * i, 0, 0) F(6, 0.6)]); ]\n",
+    );
+    let keys = "--key time=0_eye=0,-8,1.7;time=2_eye=0,8,1.7 --fps 5 --sun 120,40";
+    let moments = |folder: &str| -> Vec<[f64; 3]> {
+        let eyes = (0..11).map(|i| {
+            let file = bench.bytes(&frame(folder, i));
+            let texts = understory::image::png_text::read(&file).unwrap();
+            let (_, moment) = texts.into_iter().find(|(key, _)| key == "Moment").unwrap();
+            let eye = moment
+                .split("eye=[")
+                .nth(1)
+                .unwrap()
+                .split(']')
+                .next()
+                .unwrap();
+            let numbers: Vec<f64> = eye.split(", ").map(|n| n.parse().unwrap()).collect();
+            [numbers[0], numbers[1], numbers[2]]
+        });
+        eyes.collect()
+    };
+    bench.succeed(&format!("fly m.rgg --walk 1.7 {keys} -o walk {SMALL}"));
+    for [x, y, z] in moments("walk") {
+        assert!((z - 1.7).abs() < 1e-6, "{x} {y} {z}");
+        let nearest = (-9..=9).map(|i| (x - 2.0 * f64::from(i)).hypot(y));
+        assert!(nearest.fold(f64::INFINITY, f64::min) > 0.4, "{x} {y}");
+    }
+    bench.succeed(&format!("fly m.rgg --flyover 3 {keys} -o over {SMALL}"));
+    let over = moments("over");
+    assert!(over.iter().all(|[_, _, z]| *z >= 3.0 - 1e-9));
+    let [_, _, middle] = over[5];
+    assert!(middle >= 9.0 - 1e-9, "{middle}");
+    // A wall leaves no way.
+    bench.write(
+        "m.rgg",
+        "protected void init() [ Axiom ==> [Plane] for (int i : 0:35) ([RH(10 * i) Translate(3, 0, 0) F(6, 0.6)]); ]\n",
+    );
+    let message = bench.fail(
+        &format!("fly m.rgg --walk 1.7 --key time=0_eye=0,0,1.7;time=2_eye=0,8,1.7 -o no {SMALL}"),
+        2,
+    );
+    assert!(message.contains("no way leads"), "{message}");
+}
+
+#[test]
+fn organs_grow_between_steps() {
+    let model = "module Bud(float len) extends Sphere(0.08);\nprotected void init() [ Axiom ==> F(1, 0.1) Bud(1); ]\n\
+                 public void run() [ f:F ::> f.length = f.length + 1; Bud(x) ==> F(x, 0.04) Bud(x); ]\n";
+    let bench = Bench::new();
+    bench.write("m.rgg", model);
+    let mut growth = opened::Opened::new(bench.path("m.rgg"), &[("steps", "0")]).grow();
+    let earlier = growth.numbers();
+    growth.step().unwrap();
+    let young = growth.go_back(&earlier, 0.25);
+    let tree = growth.tree_text();
+    // The old internode goes from 1 to 2, the new one from 0 to 1, the new bud from 0 to its size.
+    assert!(
+        tree.contains("1.25") && tree.contains("0.25") && tree.contains("0.01"),
+        "{tree}"
+    );
+    assert!(young.is_empty(), "{young:?}");
+
+    // Frames at whole steps are the pictures of those steps; those between are neither of them.
+    let fly =
+        format!("fly m.rgg --grow 0..2 --flight-frames 5 --eye 0,-9,1 --target 0,0,1 -o f {SMALL}");
+    bench.succeed(&fly);
+    let shown: Vec<Vec<u8>> = (0..5)
+        .map(|i| pixels(&bench.bytes(&frame("f", i))))
+        .collect();
+    for i in 0..4 {
+        assert!(
+            shown[i] != shown[i + 1],
+            "frames {i} and {} are the same",
+            i + 1
+        );
+    }
+    bench.succeed(
+        &fly.replace(
+            "fly m.rgg --grow 0..2 --flight-frames 5",
+            "render m.rgg --steps 1",
+        )
+        .replace("-o f", "-o one.png")
+        .replace(" --flicker 0", ""),
+    );
+    let exposed_alike = |rgb: &[u8]| rgb.iter().map(|v| u64::from(*v)).sum::<u64>() as f64;
+    let (film, alone) = (
+        exposed_alike(&shown[2]),
+        exposed_alike(&pixels(&bench.bytes("one.png"))),
+    );
+    assert!((film / alone - 1.0).abs() < 0.2, "{film} {alone}");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_script_for_slurm_makes_the_same_film() {
+    use std::os::unix::fs::PermissionsExt;
+    let bench = Bench::new();
+    let fly = format!(
+        "fly m.rgg --renderer photon --global-photons 2000 --orbit --flight-frames 6 --size 32x24 --samples 1 --threads 1"
+    );
+    bench.succeed(&format!("{fly} -o whole.mp4"));
+    bench.succeed(&format!("{fly} -o a.mp4 --slurm job.sh"));
+    assert!(!bench.path("a.mp4.frames").exists());
+    // A scheduler that does each job at once.
+    bench.write(
+        "sbatch",
+        "#!/bin/bash\nset -e\nfor a in \"$@\"; do case \"$a\" in --array=*) array=${a#--array=};; esac; done\njob=\"${@: -1}\"\n\
+         if [ -n \"$array\" ]; then for i in $(seq ${array%-*} ${array#*-}); do SLURM_ARRAY_TASK_ID=$i bash \"$job\"; done\n\
+         else bash \"$job\"; fi\necho 17\n",
+    );
+    fs::set_permissions(bench.path("sbatch"), fs::Permissions::from_mode(0o755)).unwrap();
+    let path = format!(
+        "{}:{}",
+        bench.folder.path().display(),
+        std::env::var("PATH").unwrap()
+    );
+    let output = std::process::Command::new("bash")
+        .arg("job.sh")
+        .current_dir(bench.folder.path())
+        .env("PATH", path)
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("submitted 17"));
+    assert!(bench.path("a.mp4.solution").exists());
+    assert!(bench.bytes("a.mp4") == bench.bytes("whole.mp4"));
 }

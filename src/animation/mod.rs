@@ -22,6 +22,9 @@ mod gif;
 pub mod h264;
 pub mod key;
 pub mod mp4;
+pub mod plan;
+pub mod route;
+pub mod sheet;
 pub mod spline;
 mod webp;
 

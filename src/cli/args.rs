@@ -20,6 +20,8 @@ pub struct Request {
     pub action: Action,
     /// The options set by flags, over the defaults.
     pub flags: Options,
+    /// The command line without the program's name.
+    pub words: Vec<String>,
 }
 
 /// A command with its paths.
@@ -218,12 +220,21 @@ pub struct FlyArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub model: ModelArg,
+    /// Draw the path from above into this picture; without --output nothing else is made
+    #[arg(long, value_name = "FILE")]
+    pub plan: Option<PathBuf>,
+    /// Put frames of the film, small and side by side, into this picture
+    #[arg(long, value_name = "FILE", requires = "output")]
+    pub sheet: Option<PathBuf>,
+    /// Make nothing: write a script that makes the film on a cluster with Slurm
+    #[arg(long, value_name = "JOB.sh", requires = "output")]
+    pub slurm: Option<PathBuf>,
     /// The film: .mp4 (H.264), .gif, .png or .apng (animated PNG), .webp; a path without a suffix is a folder for frame-000000.png and so on
     #[arg(
         short,
         long,
         value_name = "FILE",
-        required_unless_present = "explain_options"
+        required_unless_present_any = ["explain_options", "plan"]
     )]
     pub output: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
@@ -340,6 +351,10 @@ impl Request {
     /// What to print: the error, or the help that was asked for.
     pub fn parse(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
         let mut cli = cli();
+        let words: Vec<OsString> = words.into_iter().collect();
+        let plain = words.iter().skip(1);
+        let plain = plain.map(|word| word.to_string_lossy().into_owned());
+        let plain: Vec<String> = plain.collect();
         let matches = cli.try_get_matches_from_mut(words)?;
         let action = Cli::from_arg_matches(&matches)?.action;
         let mut flags = Options::default();
@@ -355,7 +370,11 @@ impl Request {
                 })?;
             }
         }
-        Ok(Self { action, flags })
+        Ok(Self {
+            action,
+            flags,
+            words: plain,
+        })
     }
 }
 

@@ -1,45 +1,140 @@
 //! `fly`: films.
 
 use super::args::FlyArgs;
+use super::cluster;
 use super::commands::{check_wishes, finished, run, solution_files, studio};
 use super::shell::Shell;
 use crate::animation::FilmShape;
+use crate::image::{Format, Picture};
 use crate::options::Command;
 use crate::pipeline::course;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::making::{Made, Partial};
 use crate::pipeline::reel::Reel;
+use crate::pipeline::store::{PictureTarget, ScriptTarget};
+use crate::pipeline::studio::Run;
+use std::path::Path;
 
 /// `fly`: the frames of a film, and the film.
 pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
     let path = &args.model.model;
-    let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(path, Command::Fly),
+    if args.manners.explain_options {
+        return shell.explain(path, Command::Fly);
+    }
+    let plan = picture_target(shell, args.plan.as_deref())?;
+    let Some(output) = &args.output else {
+        return match plan {
+            Some(plan) => draw_plan(shell, args, &plan),
+            None => shell.explain(path, Command::Fly),
+        };
     };
     let reel = Reel::new(&shell.world, output)?;
+    let sheet = picture_target(shell, args.sheet.as_deref())?;
     let report = shell.report_target(args.report.as_deref())?;
+    let script = args.slurm.as_deref();
+    let script = script
+        .map(|script| ScriptTarget::new(&shell.world, script))
+        .transpose()?;
     let mut studio = studio(shell, &args.model)?;
     studio.solution_files = solution_files(shell, &args.light, output)?;
     run(shell, &mut studio, |studio, run| {
         studio.solution_files.check(&run.options)?;
-        course::check(&run.options)?;
-        let shape = course::shape(&run.options);
+        let shape = check(shell, run)?;
         let reel = reel.with(run.options.frame_format.value, shape)?;
-        check_wishes(&shell.world, run)?;
-        if let Some(view) = course::decided(&run.options) {
-            // What needs no scene is refused before there is a folder.
-            course::cameras(run, &course::flight(&run.options, view))?;
+        if let Some(script) = &script {
+            return write_script(shell, run, output, script);
+        }
+        if let Some(plan) = &plan {
+            let map = shell.making(Partial::Drop).plan(studio, run)?;
+            put(shell, plan, &map, run)?;
         }
         reel.open(&shell.world)?;
         let made = shell.making(Partial::Drop).film(studio, run, &reel)?;
-        shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
+        let told = (&studio.seconds, studio.work);
+        shell.report(report.as_ref(), run, told, &made)?;
+        if let Some(sheet) = sheet.as_ref().filter(|_| made.is_whole) {
+            let frames = run.options.frames.value.clone();
+            let frames = frames.unwrap_or(0..shape.n_frames);
+            put(shell, sheet, &reel.sheet(&shell.world, shape, frames)?, run)?;
+        }
         let seconds = studio.seconds.summary();
         for line in summary(&reel, shape, &made, &seconds) {
             shell.terminal.note(&line);
         }
         finished(&made)
     })
+}
+
+/// Refuses what cannot be a film before the model is grown, as far as that can be known.
+fn check(shell: &Shell, run: &Run) -> Result<FilmShape, Failure> {
+    course::check(&run.options)?;
+    check_wishes(&shell.world, run)?;
+    if let Some(view) = course::decided(&run.options) {
+        course::cameras(run, &course::flight(&run.options, view))?;
+    }
+    Ok(course::shape(&run.options))
+}
+
+/// A map or a sheet to be: an ordinary picture.
+fn picture_target(shell: &Shell, path: Option<&Path>) -> Result<Option<PictureTarget>, Failure> {
+    let Some(path) = path else { return Ok(None) };
+    let target = PictureTarget::new(&shell.world, path)?;
+    match target.format() {
+        Format::Png | Format::Jpeg | Format::Webp => Ok(Some(target)),
+        Format::Exr | Format::Hdr => Err(Failure::Usage(format!(
+            "`{}` would hold radiances: maps and sheets are .png, .jpg or .webp",
+            path.display()
+        ))),
+    }
+}
+
+fn put(shell: &Shell, target: &PictureTarget, picture: &Picture, run: &Run) -> Result<(), Failure> {
+    target.write(&shell.world, picture, &run.texts())?;
+    shell.terminal.note(&format!(
+        "{}: {}x{}",
+        target.path().display(),
+        picture.width,
+        picture.height
+    ));
+    Ok(())
+}
+
+/// Only the map.
+fn draw_plan(shell: &Shell, args: &FlyArgs, plan: &PictureTarget) -> Result<(), Failure> {
+    let mut studio = studio(shell, &args.model)?;
+    run(shell, &mut studio, |studio, run| {
+        check(shell, run)?;
+        let map = shell.making(Partial::Drop).plan(studio, run)?;
+        put(shell, plan, &map, run)
+    })
+}
+
+/// Only the script for a cluster.
+fn write_script(
+    shell: &Shell,
+    run: &Run,
+    output: &Path,
+    target: &ScriptTarget,
+) -> Result<(), Failure> {
+    let here = |error: std::io::Error| {
+        Failure::World(format!("cannot tell where this program is: {error}"))
+    };
+    let n_frames = course::shape(&run.options).n_frames;
+    let words = cluster::without_parts(&shell.words);
+    let text = cluster::script(&cluster::Plan {
+        program: &std::env::current_exe().map_err(here)?,
+        folder: &std::env::current_dir().map_err(here)?,
+        words: &words,
+        output,
+        n_frames,
+        options: &run.options,
+    });
+    target.write(&shell.world, &text)?;
+    let file = target.path().display();
+    shell.terminal.note(&format!(
+        "{file}: {n_frames} frames; submit it with `bash {file}`"
+    ));
+    Ok(())
 }
 
 /// Lines about a film.

@@ -1,6 +1,7 @@
 //! The program as people meet it: commands, messages, exit codes.
 
 pub mod args;
+mod cluster;
 mod commands;
 mod flying;
 pub mod outcome;

@@ -26,6 +26,8 @@ pub(super) struct Shell {
     pub(super) cancel: CancelToken,
     /// The options set by flags.
     pub(super) flags: Options,
+    /// The command line without the program's name.
+    pub(super) words: Vec<String>,
 }
 
 impl Shell {
@@ -51,6 +53,7 @@ impl Shell {
             terminal,
             cancel,
             flags: request.flags.clone(),
+            words: request.words.clone(),
         }
     }
 

@@ -206,6 +206,11 @@ impl Growth {
         })
     }
 
+    /// The graph, to be changed by who draws it between two steps.
+    pub(super) fn graph_mut(&mut self) -> &mut Graph<Value> {
+        &mut self.machine.graph
+    }
+
     /// The model as it stands, drawn on the caller's own stack.
     pub fn sketch(&mut self) -> Sketch<'_> {
         Sketch::after_step(&self.program, &mut self.machine, self.n_steps, SHALLOW)

@@ -1,6 +1,6 @@
 //! The table of options: one row each.
 
-use super::flying::{FrameCount, FrameFormat, FrameRate};
+use super::flying::{FrameCount, FrameFormat, FrameRate, Metres};
 use super::lighting::{Fraction, PlotSize};
 use super::radiosity::{HemicubePixels, SplitDepth, Threshold, Width};
 use super::setting::{Origin, SetError, Setting};
@@ -302,6 +302,10 @@ options! {
     key: Option<KeyFrames> = "none", "key", "KEYS", Fly, Flight, &[Fly];
     /// Flies through the key frames at an even speed; their times then only order them
     even_speed: bool = "false", "even-speed", "", Fly, Flight, &[Fly];
+    /// Flies so many metres above terrain and crowns: across the model, or along the `eye`s of the key frames (their x and y)
+    flyover: Option<Metres> = "none", "flyover", "METRES", Fly, Flight, &[Fly];
+    /// Walks through the stand with the eyes at this height, round trunks: across the model, or from `eye` to `eye` of the key frames
+    walk: Option<Metres> = "none", "walk", "METRES", Fly, Flight, &[Fly];
     /// The model grows from step `A` in the first frame to step `B` in the last
     grow: Option<Range<u32>> = "none", "grow", "A..B", Fly, Flight, &[Fly];
     /// How many frames the whole flight has, whichever of them are made; `auto`: 120, with key frames as many as their times take

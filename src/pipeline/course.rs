@@ -3,18 +3,21 @@
 use super::failure::Failure;
 use super::studio::Run;
 use super::viewpoint;
+use crate::animation::route::{self, RouteError};
 use crate::animation::{FilmShape, Flight, KeyFrames, Moment, Speed, SunPlace};
 use crate::camera::{Camera, View};
 use crate::diag::Diagnostic;
 use crate::options::value::Daylight;
 use crate::options::{Options, Origin};
+use crate::scene::Scene;
+use glam::DVec3;
 use std::num::NonZeroU32;
 
 /// Frames of a flight that has no times of its own.
 const USUAL_FRAMES: NonZeroU32 = NonZeroU32::new(120).unwrap();
 /// What a flight can be, for people.
-const WAYS: &str = "`--orbit` flies once round the model, `--turntable` turns it, `--key` or `[[fly.key]]` in the file beside \
-                    the model flies through key frames, `--grow A..B` lets it grow";
+const WAYS: &str = "`--orbit` flies once round the model, `--turntable` turns it, `--flyover METRES` and `--walk METRES` cross it, \
+                    `--key` or `[[fly.key]]` in the file beside the model flies through key frames, `--grow A..B` lets it grow";
 
 /// Refuses what cannot be a flight, before the model is grown.
 ///
@@ -64,12 +67,55 @@ pub fn check(options: &Options) -> Result<(), Failure> {
     }
 }
 
+/// Whether rays find the way.
+fn is_found(options: &Options) -> bool {
+    options.flyover.value.is_some() || options.walk.value.is_some()
+}
+
+/// The way that rays find through the scene, if the options want one. What key frames say of sun, steps and field of view comes
+/// along: their times are spread over the way.
+fn found(options: &Options, scene: &Scene) -> Result<Option<KeyFrames>, RouteError> {
+    let keys = options
+        .key
+        .value
+        .as_ref()
+        .map_or(&[][..], KeyFrames::frames);
+    let eyes: Vec<DVec3> = keys.iter().filter_map(|key| key.eye).collect();
+    let way = if eyes.len() >= 2 {
+        eyes.iter().map(|eye| eye.truncate()).collect()
+    } else {
+        route::across(scene)?
+    };
+    let found = if let Some(height) = options.flyover.value {
+        route::flyover(scene, &way, height.0)?
+    } else if let Some(height) = options.walk.value {
+        let level = eyes.first().filter(|_| eyes.len() >= 2).map(|eye| eye.z);
+        route::walk(scene, &way, level, height.0)?
+    } else {
+        return Ok(None);
+    };
+    let mut frames = found.frames().to_vec();
+    let span = (
+        keys.first().map_or(0.0, |key| key.time),
+        keys.last().map_or(1.0, |key| key.time),
+    );
+    let last = frames.len() - 1;
+    for key in keys {
+        let part = (key.time - span.0) / (span.1 - span.0);
+        let frame = &mut frames[(part * last as f64).round() as usize];
+        (frame.fov, frame.step, frame.sun) = (key.fov, key.step, key.sun);
+    }
+    Ok(KeyFrames::new(frames).ok())
+}
+
 /// The ways of the camera that the options name.
 fn ways(options: &Options) -> Vec<&'static str> {
     let all = [
         ("orbit", options.orbit.value),
         ("turntable", options.turntable.value),
-        ("key", options.key.value.is_some()),
+        ("flyover", options.flyover.value.is_some()),
+        ("walk", options.walk.value.is_some()),
+        ("key", options.key.value.is_some() && !is_found(options)),
     ];
     all.iter()
         .filter(|(_, is_wanted)| *is_wanted)
@@ -128,7 +174,23 @@ pub fn last_step(options: &Options) -> Option<f64> {
         .reduce(f64::max)
 }
 
-/// The flight that the options ask for, from this view.
+/// The flight that the options ask for through a scene.
+///
+/// # Errors
+/// If rays are to find the way and find none.
+pub fn flight_through(options: &Options, start: View, scene: &Scene) -> Result<Flight, Failure> {
+    let keys = found(options, scene).map_err(|error| Failure::Usage(error.to_string()))?;
+    let Some(keys) = keys else {
+        return Ok(flight(options, start));
+    };
+    let flight = Flight::keys(start, n_frames(options), &keys, Speed::Even);
+    Ok(match &options.grow.value {
+        Some(growth) => flight.growing(growth),
+        None => flight,
+    })
+}
+
+/// The flight that the options ask for, from this view, if no rays are to find the way.
 pub fn flight(options: &Options, start: View) -> Flight {
     let n = n_frames(options);
     let flight = if options.orbit.value {
@@ -185,6 +247,9 @@ pub fn cameras(run: &Run, flight: &Flight) -> Result<Vec<(Moment, Camera)>, Fail
 
 /// The view that the options alone decide, if no scene is needed for it.
 pub fn decided(options: &Options) -> Option<View> {
+    if is_found(options) {
+        return None;
+    }
     let says_all = options.key.value.as_ref().is_some_and(|keys| {
         let keys = keys.frames();
         keys.iter().any(|key| key.eye.is_some()) && keys.iter().any(|key| key.target.is_some())
@@ -212,6 +277,9 @@ mod tests {
         };
         assert!(refused(&[]).contains("--orbit"));
         assert!(refused(&[("orbit", "true"), ("turntable", "true")]).contains("two paths"));
+        assert!(refused(&[("walk", "1.7"), ("flyover", "9")]).contains("two paths"));
+        let eyes = ("key", "time=0 eye=0,0,0; time=1 eye=9,0,0");
+        assert!(check(&options(&[("walk", "1.7"), eyes])).is_ok());
         assert!(refused(&[("orbit", "true"), ("even-speed", "true")]).contains("key frames"));
         assert!(
             refused(&[("orbit", "true"), ("frames", "119..121")]).contains("--flight-frames 121")

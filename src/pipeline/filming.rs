@@ -16,11 +16,12 @@ use super::studio::{Run, Studio};
 use super::viewing::{Prepared, Viewing};
 use super::viewpoint;
 use crate::animation::flicker::{self, Flicker, FlickerMeter};
+use crate::animation::plan;
 use crate::animation::{FilmShape, Flight, Moment};
-use crate::camera::Camera;
+use crate::camera::{Camera, View};
 use crate::diag::{Diagnostics, SourceMap};
 use crate::film::LinearImage;
-use crate::image::{Format, Pixels};
+use crate::image::{Format, Picture, Pixels};
 use crate::options::{Options, Origin};
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -69,6 +70,20 @@ struct Done {
 }
 
 impl Making<'_> {
+    /// The map of the flight that the options ask for.
+    ///
+    /// # Errors
+    /// If growth or the flight fails.
+    pub fn plan(&self, studio: &mut Studio<'_>, run: &mut Run) -> Result<Picture, Failure> {
+        let mut shooting = Shooting::new(self, studio, run);
+        let flight = shooting.flight()?;
+        shooting.set_moment(course::last_step(&shooting.base), None)?;
+        let scene = shooting.studio.build(shooting.run, self.cancel)?;
+        let views: Vec<View> = flight.all().map(|frame| flight.view(frame)).collect();
+        shooting.run.options = shooting.base;
+        Ok(plan::plan(&scene, &views))
+    }
+
     /// Makes the frames that the options ask for, and the film once all its frames are there. Frames that are there already
     /// and were made from the same are kept. Stopped early, what is finished stays.
     ///
@@ -81,14 +96,7 @@ impl Making<'_> {
         reel: &Reel,
     ) -> Result<Made, Failure> {
         let shape = course::shape(&run.options);
-        let mut shooting = Shooting {
-            making: *self,
-            studio,
-            base: run.options.clone(),
-            run,
-            set: None,
-            done: Done::default(),
-        };
+        let mut shooting = Shooting::new(self, studio, run);
         let flight = shooting.flight()?;
         let jobs = shooting.jobs(&flight)?;
         let wanted = shooting.base.frames.value.clone().unwrap_or(flight.all());
@@ -124,7 +132,18 @@ impl Making<'_> {
     }
 }
 
-impl Shooting<'_, '_> {
+impl<'a, 'w> Shooting<'a, 'w> {
+    fn new(making: &Making<'a>, studio: &'a mut Studio<'w>, run: &'a mut Run) -> Self {
+        Self {
+            making: *making,
+            studio,
+            base: run.options.clone(),
+            run,
+            set: None,
+            done: Done::default(),
+        }
+    }
+
     /// The flight, whose view is that of the largest model unless the options decide it.
     fn flight(&mut self) -> Result<Flight, Failure> {
         if let Some(view) = course::decided(&self.base) {
@@ -133,7 +152,7 @@ impl Shooting<'_, '_> {
         self.set_moment(course::last_step(&self.base), None)?;
         let scene = self.studio.build(self.run, self.making.cancel)?;
         let view = viewpoint::of_scene(&self.base, &scene);
-        Ok(course::flight(&self.base, view))
+        course::flight_through(&self.base, view, &scene)
     }
 
     /// Sets the options to those of one moment.
@@ -151,6 +170,7 @@ impl Shooting<'_, '_> {
         if let Some(step) = step {
             set("steps", step.floor().to_string())?;
         }
+        self.run.part = step.map_or(0.0, |step| step - step.floor());
         if let Some(sun) = sun {
             set("sun", format!("{},{}", sun.azimuth, sun.elevation))?;
             set("date", "none".into())?;
@@ -400,6 +420,7 @@ impl Shooting<'_, '_> {
     fn end(self, is_whole: bool, flicker: Option<Flicker>, film: Option<ContentHash>) -> Made {
         // Single frames had options of their own.
         self.run.options = self.base;
+        self.run.part = 0.0;
         let mut done = self.done;
         done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
         let all: String = done

@@ -176,6 +176,20 @@ pub fn grow(
     Ok(growth)
 }
 
+/// Grows a model by one more step.
+///
+/// # Errors
+/// As [`grow`].
+pub fn step(
+    run: &Run,
+    memory: u64,
+    growth: &mut Growth,
+    cancel: &CancelToken,
+) -> Result<(), Failure> {
+    let stepped = growth.step();
+    stepped.map_err(|fault| blame_growth(run, memory, cancel, *fault))
+}
+
 /// What a fault of the grown model means to the user.
 fn blame_growth(run: &Run, memory: u64, cancel: &CancelToken, mut fault: Diagnostic) -> Failure {
     if cancel.is_cancelled() {

@@ -4,6 +4,7 @@
 //! and the options of its [`Stage`](crate::options::Stage)), so who runs a model twice repeats only what changed: a
 //! [`Studio`](studio::Studio) keeps the stages up to the light that all cameras share, [`Making`](making::Making) takes pictures of it.
 
+mod ages;
 pub mod assets;
 pub mod audience;
 pub mod budget;

@@ -9,6 +9,7 @@ use super::exposing;
 use super::failure::Failure;
 use super::store::{PictureTarget, chain, may_write};
 use super::world::{Entry, World};
+use crate::animation::sheet;
 use crate::animation::{FilmError, FilmFormat, FilmShape, film, frame_name};
 use crate::color::Rgb;
 use crate::film::LinearImage;
@@ -227,6 +228,24 @@ impl Reel {
             .replace(path, &bytes)
             .map_err(|error| Failure::file("write", path, &error))?;
         Ok(Some(ContentHash::of([&bytes[..]])))
+    }
+
+    /// The contact sheet of the frames that are there, among those of `frames`.
+    ///
+    /// # Errors
+    /// If one cannot be read.
+    pub fn sheet(
+        &self,
+        world: &dyn World,
+        shape: FilmShape,
+        frames: std::ops::Range<u32>,
+    ) -> Result<Picture, Failure> {
+        let chosen = sheet::chosen(frames.end - frames.start);
+        let shown = chosen
+            .iter()
+            .map(|i| self.shown(world, frames.start + i, 1.0));
+        let shown = shown.collect::<Result<Vec<_>, _>>()?;
+        Ok(sheet::sheet(&shown, shape.width, shape.height))
     }
 
     fn check(&self, world: &dyn World) -> Result<(), Failure> {

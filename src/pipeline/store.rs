@@ -192,6 +192,46 @@ impl CsvTarget {
     }
 }
 
+/// A shell script to be.
+#[derive(Clone, Debug)]
+pub struct ScriptTarget {
+    path: PathBuf,
+}
+
+impl ScriptTarget {
+    /// A script at `path`.
+    ///
+    /// # Errors
+    /// If files cannot be made there, or something that is no script is there already.
+    pub fn new(world: &dyn World, path: &Path) -> Result<Self, Failure> {
+        let target = Self {
+            path: path.to_owned(),
+        };
+        target.check(world)?;
+        Ok(target)
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the script.
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there before is then untouched.
+    pub fn write(&self, world: &dyn World, text: &str) -> Result<(), Failure> {
+        self.check(world)?;
+        put(world, &self.path, text.as_bytes())
+    }
+
+    fn check(&self, world: &dyn World) -> Result<(), Failure> {
+        may_write(world, &self.path, "a shell script", |head| {
+            head.starts_with(b"#!/bin/bash")
+        })
+    }
+}
+
 /// Whether a file may be put at `path`: its folder takes files, and what is there is nothing, empty, or `is_own`.
 pub(super) fn may_write(
     world: &dyn World,

@@ -1,5 +1,6 @@
 //! The stages of a run, each kept for the next run that has the same inputs.
 
+use super::ages;
 use super::audience::Audience;
 use super::budget;
 use super::charts;
@@ -49,6 +50,8 @@ pub struct Run {
     pub model: Arc<Model>,
     /// What it probably does not mean: warnings.
     pub warnings: Diagnostics,
+    /// How much of one more step the model has grown, at least 0 and less than 1.
+    pub part: f64,
 }
 
 /// Whether stages are kept after the next one is done.
@@ -89,9 +92,15 @@ pub struct Studio<'w> {
 impl Run {
     /// Equal for runs that grow the same graph.
     pub fn growth_key(&self) -> ContentHash {
-        self.sources
+        let key = self
+            .sources
             .model_hash
-            .with(&self.options.fingerprint(Stage::Growth))
+            .with(&self.options.fingerprint(Stage::Growth));
+        if self.part > 0.0 {
+            key.with(&format!("{:?}", self.part))
+        } else {
+            key
+        }
     }
 
     /// Equal for runs whose drawn models are the same.
@@ -209,6 +218,7 @@ impl<'w> Studio<'w> {
             options,
             model: Arc::new(model),
             warnings: found,
+            part: 0.0,
         })
     }
 
@@ -373,7 +383,11 @@ impl<'w> Studio<'w> {
         self.audience.begins("drawing");
         let memory = budget::memory(self.world, &run.options);
         let drawn = self.seconds.time(self.world, Phase::Scene, || {
-            growing::draw(run, memory, &mut growth, Purpose::Picture, cancel)
+            if run.part > 0.0 {
+                ages::draw_between(run, memory, &mut growth, cancel)
+            } else {
+                growing::draw(run, memory, &mut growth, Purpose::Picture, cancel)
+            }
         });
         self.audience.ends();
         let (drawn, found) = drawn?;
