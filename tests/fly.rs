@@ -573,9 +573,9 @@ fn flights_over_and_through_keep_away_from_what_stands_there() {
     }
     bench.succeed(&format!("fly m.rgg --flyover 3 {keys} -o over {SMALL}"));
     let over = moments("over");
-    assert!(over.iter().all(|[_, _, z]| *z >= 3.0 - 1e-9));
+    assert!(over.iter().all(|[_, _, z]| *z >= 3.0 - 1e-4));
     let [_, _, middle] = over[5];
-    assert!(middle >= 9.0 - 1e-9, "{middle}");
+    assert!(middle >= 9.0 - 1e-4, "{middle}");
     // A wall leaves no way.
     bench.write(
         "m.rgg",
