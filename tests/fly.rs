@@ -297,9 +297,7 @@ fn parts_make_the_same_film_as_one_run() {
 #[test]
 fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
     let bench = Bench::new();
-    let words = format!(
-        "fly m.rgg --steps 4 --orbit --flight-frames 12 --size 64x48 --samples 4 --threads 1 --flicker 0"
-    );
+    let words = "fly m.rgg --steps 4 --orbit --flight-frames 12 --size 64x48 --samples 4 --threads 1 --flicker 0";
     bench.succeed(&format!("{words} -o whole.mp4"));
     let mut before = 0;
     // Moments from the loading of the program to after the first frames; longer each time, so that it ends.
@@ -613,12 +611,8 @@ fn organs_grow_between_steps() {
     let shown: Vec<Vec<u8>> = (0..5)
         .map(|i| pixels(&bench.bytes(&frame("f", i))))
         .collect();
-    for i in 0..4 {
-        assert!(
-            shown[i] != shown[i + 1],
-            "frames {i} and {} are the same",
-            i + 1
-        );
+    for (i, pair) in shown.windows(2).enumerate() {
+        assert!(pair[0] != pair[1], "frames {i} and {} are the same", i + 1);
     }
     bench.succeed(
         &fly.replace(
@@ -641,9 +635,7 @@ fn organs_grow_between_steps() {
 fn a_script_for_slurm_makes_the_same_film() {
     use std::os::unix::fs::PermissionsExt;
     let bench = Bench::new();
-    let fly = format!(
-        "fly m.rgg --renderer photon --global-photons 2000 --orbit --flight-frames 6 --size 32x24 --samples 1 --threads 1"
-    );
+    let fly = "fly m.rgg --renderer photon --global-photons 2000 --orbit --flight-frames 6 --size 32x24 --samples 1 --threads 1";
     bench.succeed(&format!("{fly} -o whole.mp4"));
     bench.succeed(&format!("{fly} -o a.mp4 --slurm job.sh"));
     assert!(!bench.path("a.mp4.frames").exists());

@@ -57,7 +57,7 @@ pub(super) struct BitWriter {
 impl BitWriter {
     /// Adds a bit.
     pub(super) fn bit(&mut self, bit: bool) {
-        if self.n % 8 == 0 {
+        if self.n.is_multiple_of(8) {
             self.bytes.push(0);
         }
         if let Some(last) = self.bytes.last_mut() {

@@ -3,7 +3,7 @@
 //! The encoder writes a stream without a word on its colors; what players need to know of them is added here.
 //!
 //! Source: [H264](crate::references#h264) (Annex E: description of colors and time), [BT709](crate::references#bt709)
-//! (from R'G'B' to Y'CbCr).
+//! (from `R'G'B'` to `Y'CbCr`).
 
 use super::bits::{BitReader, BitWriter};
 use rusty_h264::{Encoder, EncoderConfig, Preset, Profile, YuvFrame};
@@ -180,7 +180,7 @@ impl Stream {
     }
 }
 
-/// From sRGB to Y'CbCr of BT.709 with values in 16..=235 (16..=240 for colors); colors are means of 2×2 pixels.
+/// From sRGB to `Y'CbCr` of BT.709 with values in 16..=235 (16..=240 for colors); colors are means of 2×2 pixels.
 fn yuv(rgb: &[u8], width: usize, height: usize) -> YuvFrame {
     let mut frame = YuvFrame {
         width,

@@ -1,6 +1,6 @@
 //! The container of MP4: boxes in boxes, with all tables before the pictures so that players can begin while they load.
 //!
-//! Source: [Isobmff](crate::references#isobmff) (boxes), [AvcFile](crate::references#avcfile) (how H.264 lies in them).
+//! Source: [Isobmff](crate::references#isobmff) (boxes), [`AvcFile`](crate::references#avcfile) (how H.264 lies in them).
 
 use super::h264::{ParameterSets, Sample};
 

@@ -1,6 +1,6 @@
 //! The container of animated WebP: whole frames, each encoded without loss as a picture of its own.
 //!
-//! Source: [WebpContainer](crate::references#webpcontainer).
+//! Source: [`WebpContainer`](crate::references#webpcontainer).
 
 use super::gif::duration;
 

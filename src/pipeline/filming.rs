@@ -27,7 +27,7 @@ use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Added to the seed of frames that are rendered again to measure flicker.
-const OTHER_SEED: i64 = 0x666c_6963_6b65_72;
+const OTHER_SEED: i64 = 0x0066_6c69_636b_6572;
 
 /// A frame to be.
 struct Job {
