@@ -130,7 +130,7 @@ impl GifWriter {
 
     /// The file.
     pub(super) fn finish(self) -> Result<Vec<u8>, gif::EncodingError> {
-        Ok(self.encoder.into_inner()?)
+        self.encoder.into_inner()
     }
 }
 
