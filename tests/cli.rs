@@ -225,7 +225,7 @@ fn senseless_wishes_are_usage_errors() {
         ("--fov 0", "more than 0"),
         ("--fov 180", "less than 180"),
         ("--threads 0", "1 to 1024"),
-        ("--renderer radiosity", "not built yet"),
+        ("--renderer radiance", "`radiosity`"),
         ("--quality best", "draft"),
         ("--sun 0,95", "0 to 90"),
         ("--smaples 3", "--samples"),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 #[path = "support/opened.rs"]
+#[allow(dead_code, reason = "flights only grow models with it")]
 mod opened;
 
 use assert_cmd::Command;

@@ -486,7 +486,7 @@ mod tests {
             ),
             ("--eye 1,NaN,2", "three finite numbers"),
             ("--fov 180", "less than 180"),
-            ("--renderer radiosity", "not built yet"),
+            ("--renderer radiance", "`radiosity`"),
             ("--smaples 3", "--samples"),
         ] {
             let error = parse(&format!("render m.rgg -o a.png {flags}")).unwrap_err();

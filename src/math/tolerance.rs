@@ -221,3 +221,21 @@ pub const RING_SHARE: f64 = 1e-3;
 /// The same corner, reached from two faces through their frames, differs by a few roundings in `f64`; different corners are apart by
 /// more than a millionth unless elements are that small, whose light may be shared. Used by [`crate::integrator::radiosity`].
 pub const WELD: f64 = 1e-9;
+
+/// How far a corner of one face may lie behind the plane of another that still sees all of it, as a share of its size.
+///
+/// A few roundings in `f64` of frames that both went through; a million times larger would take the form factor of what is partly
+/// below the horizon for one of what is above it. Used by [`crate::integrator::radiosity`].
+pub const FACING_SLACK: f64 = 1e-9;
+
+/// How far from the middle of a hemicube geometry is drawn from, as a share of the width of its face, unless `--hemicube-size` says.
+///
+/// What is nearer covers what lies behind it all the same if it is larger than that, and only crossing faces have anything as near.
+/// Used by [`crate::integrator::radiosity`].
+pub const HEMICUBE_NEAR: f64 = 1e-4;
+
+/// How high above the plane of a face, in parts of the distance, something must be for its hemicube to show it.
+///
+/// Neighbours in the same plane differ by a few roundings in `f64`; what is that low sends 10⁻¹⁸ of its light. Used by
+/// [`crate::integrator::radiosity`].
+pub const HEMICUBE_HORIZON: f64 = 1e-9;

@@ -465,9 +465,9 @@ mod tests {
         assert!(Bytes::parse("é").is_err() && Bytes::parse("").is_err());
         assert!(Angle::parse("180").is_err() && Angle::parse("nan").is_err());
         assert!(
-            Renderer::parse("radiosity")
+            Renderer::parse("radiance")
                 .unwrap_err()
-                .contains("not built yet")
+                .contains("`radiosity`")
         );
         assert!(Daylight::parse("10,91").is_err());
         assert!(Ground::parse("1,1,2").is_err());

@@ -105,8 +105,8 @@ impl Hemisphere {
         for cell in cells {
             let sine = cell.flat.length();
             let cosine = (1.0 - sine * sine).max(0.0).sqrt().max(LEAST_COSINE);
-            // -tan θ along the direction that is a quarter turn further.
-            let weight = cell.flat.perp() * (-PI / (cosine * cells.len() as f64));
+            // tan θ along the axis that turns the normal towards the cell.
+            let weight = cell.flat.perp() * (PI / (cosine * cells.len() as f64));
             for (sum, light) in sums.iter_mut().zip(cell.arriving.radiance.to_array()) {
                 *sum += weight * light;
             }

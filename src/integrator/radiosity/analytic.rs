@@ -9,6 +9,7 @@ use super::rays::{CosineRays, cell_point};
 use super::system::{FormFactors, Row};
 use crate::color::Rgb;
 use crate::geometry::chart::Form;
+use crate::math::tolerance::FACING_SLACK;
 use glam::{DVec2, DVec3};
 
 /// How near patches are that count as near, in sizes of the larger.
@@ -16,9 +17,6 @@ const NEAR: f64 = 5.0;
 
 /// Pairs of points between which nothing may stand.
 const LINES: u32 = 16;
-
-/// How far a corner may lie behind the plane of the other, in sizes: a few roundings.
-const SLACK: f64 = 1e-9;
 
 /// A flat cell as a polygon.
 #[derive(Clone, Debug)]
@@ -62,7 +60,9 @@ impl<'a, 's> NearForms<'a, 's> {
         }
         let up = if side == 0 { from.normal } else { -from.normal };
         let is_before = |corners: &[DVec3], at: DVec3, up: DVec3| {
-            corners.iter().all(|p| (*p - at).dot(up) >= -SLACK * size)
+            corners
+                .iter()
+                .all(|p| (*p - at).dot(up) >= -FACING_SLACK * size)
         };
         if !is_before(&to.corners, from.corners[0], up) {
             return None;
@@ -132,7 +132,7 @@ impl FormFactors for NearForms<'_, '_> {
             0.0
         };
         for (_, weight) in &mut found {
-            *weight = *weight * share;
+            *weight *= share;
         }
         found.extend(
             known

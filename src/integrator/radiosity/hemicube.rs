@@ -18,6 +18,7 @@ use crate::integrator::RayCounts;
 use crate::material::Transport;
 use crate::math::frame::Frame;
 use crate::math::rng;
+use crate::math::tolerance::{HEMICUBE_HORIZON, HEMICUBE_NEAR};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::SurfacePoint;
 use glam::{DVec2, DVec3};
@@ -28,12 +29,6 @@ const PIXELS: u64 = 0x7069_7865;
 
 /// Parts along each side into which patches of round faces are cut to be drawn.
 const FACETS: u32 = 4;
-
-/// How far geometry must be, as a part of the width of a cell, unless that is given.
-const NEAR: f64 = 1e-4;
-
-/// How high above the plane of a cell, in parts of the distance, something must be to be drawn.
-const HORIZON: f64 = 1e-9;
 
 /// No polygon.
 const NOTHING: u32 = u32::MAX;
@@ -310,7 +305,7 @@ impl FormFactors for Hemicubes<'_, '_> {
     fn row(&self, node: u32, side: usize) -> Row {
         let cell = self.mesh.nodes[node as usize].cell;
         let width = self.mesh.nodes[node as usize].area.sqrt();
-        let near = self.size.map_or(NEAR * width, |size| 0.5 * size);
+        let near = self.size.map_or(HEMICUBE_NEAR * width, |size| 0.5 * size);
         let stream = rng::hash(&[self.seed, PIXELS, u64::from(node), side as u64]);
         let mut found = Vec::new();
         let places = cube_places(self.mesh, &cell, self.cubes);
@@ -410,7 +405,7 @@ fn clip(corners: &[DVec3], lowest: f64, near: f64) -> Vec<DVec3> {
             if lowest < 0.0 {
                 p.z + p.y
             } else {
-                p.y - HORIZON * p.z
+                p.y - HEMICUBE_HORIZON * p.z
             }
         },
     ];

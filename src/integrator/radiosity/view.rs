@@ -57,7 +57,7 @@ impl RadianceEstimator for View<'_> {
             let lobes = lobes_of(&met.optics);
             if lobes.is_smooth() {
                 let ways = (Strategies::Both, &*sampler);
-                radiance += throughput * self.direct(&met, wo, &lobes, &media, ways, rays);
+                radiance += throughput * self.direct((&met, wo, &media), &lobes, ways, rays);
             }
             let transport = Transport::Radiance;
             let onward = carrier.scatter(&met, wo, &mut media, transport, sampler);
@@ -96,7 +96,7 @@ impl View<'_> {
             return Rgb::BLACK;
         }
         let ways = (Strategies::LightsOnly, sampler);
-        let direct = self.direct(met, wo, &matt, media, ways, rays);
+        let direct = self.direct((met, wo, media), &matt, ways, rays);
         let RadiositySolution { mesh, vertices, .. } = &*self.solution;
         let Some(place) = mesh.element_at(&met.hit, met.point.position) else {
             return direct;
@@ -112,10 +112,8 @@ impl View<'_> {
 
     fn direct(
         &self,
-        met: &Met<'_>,
-        wo: DVec3,
+        (met, wo, media): (&Met<'_>, DVec3, &Media),
         scattering: &Scattering<'_>,
-        media: &Media,
         (strategies, sampler): (Strategies, &Sampler),
         rays: &mut RayCounts,
     ) -> Rgb {
