@@ -265,7 +265,7 @@ fn leaves_smaller_than_the_kernel_show_how_light_lies_on_them() {
     for w in [DVec3::Z, DVec3::NEG_Z] {
         for x in [-0.18, 0.02, 0.14] {
             let from = |u: f64, v: f64| DVec3::new(x + 0.04 * u, 0.3 * v - 0.15, 0.0) - w * 0.01;
-            let found = mean_over(&*photon, (8, 64), from, w);
+            let found = mean_over(&*photon, (8, 512), from, w);
             let truth = mean_over(&*path, (8, 1024), from, w);
             assert!(
                 (found / truth - 1.0).abs() < 0.04,
