@@ -96,6 +96,10 @@
 //! # H264
 //! Recommendation ITU-T H.264: Advanced video coding for generic audiovisual services. <https://www.itu.int/rec/T-REC-H.264>
 //!
+//! # Hachisuka2008
+//! T. Hachisuka, S. Ogaki, H. W. Jensen: Progressive Photon Mapping. ACM Transactions on Graphics 27(5), 2008.
+//! <https://doi.org/10.1145/1409060.1409083>
+//!
 //! # Haines2019
 //! E. Haines, J. Günther, T. Akenine-Möller: Precision Improvements for Ray/Sphere Intersection. Ray Tracing Gems, chapter 7,
 //! Apress, 2019. <https://doi.org/10.1007/978-1-4842-4427-2_7>
@@ -159,6 +163,10 @@
 //! # KastenYoung1989
 //! F. Kasten, A. Young: Revised Optical Air Mass Tables and Approximation Formula. Applied Optics 28(22), 1989.
 //! <https://doi.org/10.1364/AO.28.004735>
+//!
+//! # Knaus2011
+//! C. Knaus, M. Zwicker: Progressive Photon Mapping: A Probabilistic Approach. ACM Transactions on Graphics 30(3), 2011.
+//! <https://doi.org/10.1145/1966394.1966404>
 //!
 //! # KrochmannSeidl1974
 //! J. Krochmann, M. Seidl: Quantitative Data on Daylight for Illuminating Engineering. Lighting Research and Technology 6(3),
@@ -231,6 +239,10 @@
 //! # Schlick1994
 //! C. Schlick: An Inexpensive BRDF Model for Physically-Based Rendering. Computer Graphics Forum 13(3), 1994.
 //! <https://doi.org/10.1111/1467-8659.1330233>
+//!
+//! # Schregle2003
+//! R. Schregle: Bias Compensation for Photon Maps. Computer Graphics Forum 22(4), 2003.
+//! <https://doi.org/10.1111/j.1467-8659.2003.00720.x>
 //!
 //! # Shirley1997
 //! P. Shirley, K. Chiu: A Low Distortion Map Between Disk and Square. Journal of Graphics Tools 2(3), 1997.

@@ -243,6 +243,15 @@ fn c61_a_saved_solution_gives_the_same_bytes_for_any_camera() {
         assert_eq!(made.hash, solved.0.hash, "{name}");
         assert_eq!(bench.bytes(&read), bench.bytes(&plain));
     }
+    // Of several passes.
+    let passes = [("passes", "3"), ("global-photons", "5000")];
+    let solved = bench
+        .with_files("e.png", &passes, (None, Some("p.light")))
+        .unwrap();
+    let read = bench
+        .with_files("f.png", &passes, (Some("p.light"), None))
+        .unwrap();
+    assert_eq!(solved.0.hash, read.0.hash);
     // Films too.
     let film = [("flight-frames", "3"), ("orbit", "true")];
     let one = bench
@@ -277,6 +286,7 @@ fn a_solution_of_something_else_is_refused_with_what_differs() {
         ("seed", "1", "9"),
         ("sun", "auto", "10,30"),
         ("caustic-photons", "auto", "7"),
+        ("passes", "1", "2"),
     ] {
         let text = refused(&[(key, now)]);
         let expected = format!("`{key}` was `{before}` and is now `{now}`");

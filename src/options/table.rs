@@ -249,8 +249,10 @@ options! {
     global_photons: PhotonCount = "1000000", "global-photons", "N", Render, Solution, PICTURING;
     /// Photons that it sends to mirrors and glass for caustics; `auto`: a million where there are any
     caustic_photons: Option<PhotonCount> = "auto", "caustic-photons", "N", Render, Solution, PICTURING;
-    /// Area of surface over which photons are averaged, in square metres (GroIMP's *Photon area*); `auto`: one that holds about 100
+    /// Area of surface over which photons are averaged, in square metres (GroIMP's *Photon area*); `auto`: for each place as large as the light there is even
     photon_area: Option<Area> = "auto", "photon-area", "M2", Render, Solution, PICTURING;
+    /// Passes of photon mapping: each sends as many other photons, in the memory of one; noise and blur fall with their number
+    passes: NonZeroU32 = "1", "passes", "N", Render, Solution, PICTURING;
     /// Rays by which photon mapping gathers indirect light anew where the camera looks; `0`: none, straight from the photons, blotchier
     final_gather: GatherRays = "256", "final-gather", "N", Render, View, PICTURING;
     /// How radiosity is solved: `gather` (each patch collects from all others), `shoot` (the brightest patches shoot) or `stochastic` (all patches shoot rays; for plants); `auto`: `gather` up to 20,000 patches, beyond `stochastic`

@@ -339,6 +339,7 @@ fn method(options: &Options) -> Method {
             global_photons: options.global_photons.value.0,
             caustic_photons: options.caustic_photons.value.map(|photons| photons.0),
             photon_area: options.photon_area.value.map(|area| area.0),
+            passes: options.passes.value.get(),
             max_depth: options.recursion_depth.value,
             final_gather: options.final_gather.value.0,
             ..PhotonMapping::default()
@@ -360,8 +361,8 @@ fn failure(error: &RenderError) -> Failure {
     match error {
         RenderError::Cancelled { .. } => Failure::Stopped,
         RenderError::TooManyPhotons { n, most } => Failure::World(format!(
-            "{n} photons would have to be stored, and there is memory for {most}: use fewer `--global-photons` or more \
-             `--max-memory`"
+            "{n} photons would have to be stored, and there is memory for {most}: use fewer `--global-photons` or \
+             `--caustic-photons` in several `--passes`, which need the memory of one, or more `--max-memory`"
         )),
         RenderError::TooManyPatches { n, most } => Failure::World(format!(
             "radiosity would cut the surfaces into at least {n} patches, and there is memory for {most}: use more \

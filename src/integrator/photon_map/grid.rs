@@ -11,7 +11,7 @@ use glam::{DVec3, IVec3};
 
 /// Things with a place, sorted for searches of one radius.
 #[derive(Clone, Debug)]
-pub(super) struct Grid<T> {
+pub struct Grid<T> {
     things: Vec<T>,
     /// Where the things of each slot begin, and the end.
     starts: Vec<u32>,
@@ -19,8 +19,8 @@ pub(super) struct Grid<T> {
 }
 
 impl<T: Copy> Grid<T> {
-    /// Sorts at most 2³² - 1 things for searches of up to `radius` metres, more than 0. Those of one slot keep their order.
-    pub(super) fn new(things: Vec<T>, radius: f64, place: impl Fn(&T) -> DVec3) -> Self {
+    /// Sorts at most 2³² - 1 things for searches of up to `radius` metres, more than 0. Sorting them again changes nothing.
+    pub fn new(mut things: Vec<T>, radius: f64, place: impl Fn(&T) -> DVec3) -> Self {
         let n_slots = things.len().next_power_of_two().max(1);
         let slot = |thing: &T| slot(cell(place(thing), radius), n_slots);
         let mut starts = vec![0_u32; n_slots + 1];
@@ -30,22 +30,28 @@ impl<T: Copy> Grid<T> {
         for at in 0..n_slots {
             starts[at + 1] += starts[at];
         }
+        // In place, as an American flag sort: each thing is swapped to the next free place of its slot.
         let mut next = starts.clone();
-        let mut sorted = things.clone();
-        for thing in &things {
-            let at = &mut next[slot(thing)];
-            sorted[*at as usize] = *thing;
-            *at += 1;
+        for at in 0..n_slots {
+            while next[at] < starts[at + 1] {
+                let here = next[at] as usize;
+                let there = slot(&things[here]);
+                if there != at {
+                    things.swap(here, next[there] as usize);
+                }
+                next[there] += 1;
+            }
         }
         Self {
-            things: sorted,
+            things,
             starts,
             cell: radius,
         }
     }
 
     /// All things, in an order that sorting them again keeps.
-    pub(super) fn things(&self) -> &[T] {
+    #[must_use]
+    pub fn things(&self) -> &[T] {
         &self.things
     }
 
@@ -56,8 +62,14 @@ impl<T: Copy> Grid<T> {
         self.things[begin..end].iter().for_each(visit);
     }
 
+    /// The things alone, so sorted.
+    #[must_use]
+    pub fn into_things(self) -> Vec<T> {
+        self.things
+    }
+
     /// Shows `visit` all things that may be within the grid's radius of `center`, each once, and some that are not.
-    pub(super) fn near(&self, center: DVec3, mut visit: impl FnMut(&T)) {
+    pub fn near(&self, center: DVec3, mut visit: impl FnMut(&T)) {
         let n_slots = self.starts.len() - 1;
         let middle = cell(center, self.cell);
         let mut seen = [usize::MAX; 27];

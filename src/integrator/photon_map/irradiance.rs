@@ -3,20 +3,21 @@
 //! Source: [`Christensen1999`](crate::references#christensen1999), with the places thinned out to a fraction of the kernel's radius,
 //! whatever the number of photons, and with interpolation between them instead of the nearest one. A question then costs a search
 //! among few samples, however many photons there are.
+//!
+//! Where kernels differ in size ([`spots`](super::spots)) there is a layer of samples for each size. Fine ones win where they are.
 
-use super::estimate::{self, Hidden};
-use super::grid::{Grid, cell};
-use super::radius::kernel_radius;
-use super::stored::{PackedNormal, Stored, facing};
+use super::estimate::Hidden;
+use super::grid::Grid;
+use super::pieces::PieceLight;
+use super::stored::{PackedNormal, facing};
 use crate::color::Rgb;
+use crate::math::Ray;
 use crate::math::frame::Frame;
-use crate::math::{PrimitiveId, Ray};
 use crate::scene::{Piece, Scene, SurfacePoint};
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
 /// Distance between samples, in radii of the kernel.
-const SPACING: f64 = 1.0 / 3.0;
+pub(super) const SPACING: f64 = 1.0 / 3.0;
 
 /// How far a sample is used, in spacings: every point of a cell is that near to the sample in the cell.
 const USE: f64 = 2.0;
@@ -94,15 +95,6 @@ impl Sample {
     }
 }
 
-/// Irradiance of one side of a small flat piece: by its number and the side (front first).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PieceLight {
-    /// The piece, and whether it is the back.
-    pub(super) key: (PrimitiveId, bool),
-    /// W/m².
-    pub(super) irradiance: Rgb,
-}
-
 /// Samples of one density.
 #[derive(Debug)]
 pub(super) struct Layer {
@@ -121,6 +113,8 @@ pub(super) struct IrradianceMap {
     pub(super) layers: Vec<Layer>,
     /// Sorted by key.
     pub(super) pieces: Vec<PieceLight>,
+    /// Places on the surfaces as far apart as kernels of the usual size need, if not those of the layers.
+    pub(super) places: Vec<(Vec3, PackedNormal)>,
 }
 
 impl Layer {
@@ -183,47 +177,6 @@ impl Layer {
 }
 
 impl IrradianceMap {
-    /// Makes the photons of a scene ready. `area` is that of the kernel in m², or `None` where it is to be chosen; `center` what
-    /// their positions are relative to.
-    pub(super) fn new(
-        scene: &Scene,
-        photons: Vec<Stored>,
-        center: DVec3,
-        area: Option<f64>,
-    ) -> Option<Self> {
-        let size = scene.bounds().diagonal().length();
-        let radius = kernel_radius(&photons, area, size)?;
-        let (on_pieces, photons): (Vec<Stored>, Vec<Stored>) = photons
-            .into_par_iter()
-            .partition(|photon| small_piece(scene, photon, radius).is_some());
-        let pieces = piece_lights(scene, &on_pieces, radius);
-        let spacing = radius * SPACING;
-        let places = thinned(&photons, spacing);
-        let photons = Grid::new(photons, radius, Stored::position);
-        let sample = |place: &Stored| {
-            // As the sample will have them, so that what is hidden is found again in the same frame.
-            let (position, normal) = (place.position(), place.normal().as_vec3().as_dvec3());
-            let own = radius.min(place.flat_extent());
-            let at = (position, normal);
-            let (light, hidden) = estimate::irradiance(scene, &photons, center, at, own);
-            let light = DVec3::from_array(light.to_array()).as_vec3();
-            Sample::of((
-                position.as_vec3(),
-                place.packed_normal(),
-                light,
-                own as f32,
-                hidden,
-            ))
-        };
-        let samples: Vec<Sample> = places.par_iter().map(sample).collect();
-        Some(Self {
-            center,
-            radius,
-            layers: vec![Layer::new(samples, spacing)],
-            pieces,
-        })
-    }
-
     /// Radius of the kernel, metres.
     pub(super) fn radius(&self) -> f64 {
         self.radius
@@ -269,20 +222,26 @@ impl IrradianceMap {
         matches!(piece, Piece::Flat { size, .. } if *size <= 2.0 * self.radius)
     }
 
-    /// Places of the world on its surfaces, not farther apart than the kernel shows, with the normal of the side.
+    /// Places of the world on its surfaces, not farther apart than the usual kernel shows, with the normal of the side.
     pub(super) fn places(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
-        let place = |sample: &Sample| {
-            let position = self.center + sample.position.as_dvec3();
-            (position, sample.normal.as_dvec3())
-        };
-        let layers = self.layers.iter();
-        layers.flat_map(|layer| layer.samples()).map(place)
+        let own = self.places.iter().copied();
+        let layers = self.layers.iter().filter(|_| self.places.is_empty());
+        let samples = layers.flat_map(Layer::samples);
+        let places = own.chain(samples.map(|sample| (sample.position, sample.packed)));
+        places.map(|(position, normal)| {
+            let normal = normal.unpack().as_vec3().as_dvec3();
+            (self.center + position.as_dvec3(), normal)
+        })
     }
 
     /// Least distance between those places, metres.
     pub(super) fn spacing(&self) -> f64 {
-        let layers = self.layers.iter().map(Layer::spacing);
-        layers.fold(self.radius, f64::min)
+        if self.places.is_empty() {
+            let layers = self.layers.iter().map(Layer::spacing);
+            layers.fold(self.radius, f64::min)
+        } else {
+            self.radius * SPACING
+        }
     }
 
     /// Irradiance at a point, which lies on this piece, on the side that `w` points to, W/m² per channel.
@@ -316,54 +275,4 @@ impl IrradianceMap {
             Rgb::BLACK
         }
     }
-}
-
-/// The flat piece that a photon lies on and its area, if that is smaller than the kernel.
-fn small_piece(scene: &Scene, photon: &Stored, radius: f64) -> Option<(PrimitiveId, f64)> {
-    match scene.piece(photon.piece()?) {
-        Piece::Flat { first, area, size } if size <= 2.0 * radius => Some((first, area)),
-        Piece::Flat { .. } | Piece::Body(_) | Piece::Large => None,
-    }
-}
-
-/// All light of each side of the small pieces, over their areas.
-fn piece_lights(scene: &Scene, photons: &[Stored], radius: f64) -> Vec<PieceLight> {
-    let mut found: Vec<(PrimitiveId, bool, Rgb)> = photons
-        .par_iter()
-        .filter_map(|photon| {
-            let (first, area) = small_piece(scene, photon, radius)?;
-            Some((first, !photon.is_front(), photon.power() / area))
-        })
-        .collect();
-    // Stable: photons of a side stay in their order, so their sum is always the same.
-    found.par_sort_by_key(|(first, is_back, _)| (*first, *is_back));
-    let sides = found.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
-    let light = |side: &[(PrimitiveId, bool, Rgb)]| PieceLight {
-        key: (side[0].0, side[0].1),
-        irradiance: side.iter().map(|(_, _, irradiance)| *irradiance).sum(),
-    };
-    sides.map(light).collect()
-}
-
-/// Photons whose places are sampled: one of each cell of this width and of each of six main directions of the normal: the first.
-fn thinned(photons: &[Stored], width: f64) -> Vec<Stored> {
-    let mut keys: Vec<([i32; 3], u8, u32)> = photons
-        .par_iter()
-        .enumerate()
-        .map(|(at, photon)| {
-            let normal = photon.normal();
-            let axis = normal.abs().max_position();
-            let direction = 2 * axis as u8 + u8::from(normal[axis] < 0.0);
-            (
-                cell(photon.position(), width).to_array(),
-                direction,
-                at as u32,
-            )
-        })
-        .collect();
-    keys.par_sort_unstable();
-    keys.dedup_by_key(|(cell, direction, _)| (*cell, *direction));
-    keys.iter()
-        .map(|(_, _, at)| photons[*at as usize])
-        .collect()
 }

@@ -10,10 +10,11 @@
 //! Nothing that is stored depends on a camera. Light that passed panes and alpha straight on counts as direct.
 //!
 //! ```text
-//! stored      which photons are stored              radius      how large the kernel is
+//! stored      which photons are stored              radius      how large kernels are
 //! grid        photons and samples by place          estimate    irradiance over the real area
-//! irradiance  precomputed, asked by views           view        from the camera to the maps
-//! solution    all of it, kept and as bytes
+//! spots       where irradiance is sampled           pieces      leaves smaller than the kernel
+//! irradiance  the samples, asked by views           view        from the camera to the maps
+//! progressive passes in the memory of one           solution    all of it, kept and as bytes
 //! hemisphere  irradiance and its gradients by rays  cache       gathered irradiance, kept for all cameras
 //! final_gather  indirect light by rays instead of from the map
 //! ```
@@ -23,31 +24,43 @@
 mod cache;
 mod estimate;
 mod final_gather;
-mod grid;
+pub mod grid;
 mod hemisphere;
 mod irradiance;
+mod pieces;
+mod progressive;
 mod radius;
 mod solution;
+mod spots;
 mod stored;
 mod view;
 
 use super::medium::Bodies;
 use super::photon::{Aim, Emission, Photons, trace};
 use super::sources::Sources;
-use super::{Integrator, RadianceEstimator, RenderContext, RenderError, Solution, Unreadable};
+use super::{
+    Integrator, Progress, RadianceEstimator, RenderContext, RenderError, Solution, Unreadable,
+};
 use crate::material::Material;
 use crate::math::rng;
 use crate::scene::Scene;
 use final_gather::{FinalGather, GatherSettings};
 use glam::DVec3;
 use irradiance::IrradianceMap;
+use progressive::Progressive;
 pub use solution::PhotonSolution;
+use spots::World;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use stored::{Collector, Stored, Wanted};
 use view::View;
 
 /// Bytes that a stored photon takes while the maps are made: itself, its copies in lists that are joined and sorted.
 pub const BYTES_PER_PHOTON: u64 = 3 * size_of::<Stored>() as u64;
+
+/// Up to so many photons are followed without asking whether they will fit, and so many tell it.
+const PLANNED: u64 = 1 << 20;
+const PILOTS: u64 = 1 << 14;
 
 /// Scatterings after which a photon is given up; chance ends almost all long before.
 const LONGEST_PATH: u32 = 1024;
@@ -65,8 +78,10 @@ pub struct PhotonMapping {
     pub global_photons: u64,
     /// Photons sent to mirrors and glass; `None`: a million where there are any.
     pub caustic_photons: Option<u64>,
-    /// Area of the kernel, m²; `None`: by the number of photons.
+    /// Area of the kernel, m²; `None`: for each place by the photons there.
     pub photon_area: Option<f64>,
+    /// How often as many photons are sent, at least 1; the memory is that of one pass.
+    pub passes: u32,
     /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
     pub max_depth: u32,
     /// Rays of each [final gather](final_gather), up to [`MOST_GATHER_RAYS`]; 0: indirect light comes straight from the map.
@@ -82,6 +97,7 @@ impl Default for PhotonMapping {
             global_photons: 1_000_000,
             caustic_photons: None,
             photon_area: None,
+            passes: 1,
             max_depth: 8,
             final_gather: 0,
             most_stored: u64::from(u32::MAX - 1),
@@ -183,13 +199,13 @@ impl PhotonMapping {
         Ok(PhotonSolution {
             global,
             caustic,
-            emitted: self.global_photons + n_caustic,
+            emitted: (self.global_photons + n_caustic) * u64::from(self.passes),
             stored: n_global_stored + n_caustic_stored,
             gather: OnceLock::new(),
         })
     }
 
-    /// Follows `n` photons and makes those that are wanted ready; tells how many these are.
+    /// Follows the photons of all passes and makes those that are wanted ready; tells how many these are.
     fn map(
         &self,
         scene: &Scene,
@@ -210,36 +226,112 @@ impl PhotonMapping {
         } else {
             bounds.center()
         };
+        let world = World { scene, center };
+        let seed = rng::hash(&[context.seed, aim as u64]);
+        let pass = Pass {
+            emission: &Emission::new(scene, aim),
+            world,
+            wanted,
+            photons: Photons::all(n * u64::from(self.passes), seed, LONGEST_PATH),
+            n,
+            n_passes: self.passes,
+            most: self.most_stored.min(u64::from(u32::MAX - 1)),
+        };
+        pass.plan(context)?;
+        let first = pass.photons(0, context)?;
+        let mut n_stored = first.len() as u64;
+        let Some(mut light) = Progressive::begin(world, first, self.photon_area, self.passes)
+        else {
+            return Ok((None, 0));
+        };
+        for index in 1..self.passes {
+            let photons = pass.photons(index, context)?;
+            n_stored += photons.len() as u64;
+            light.add(index + 1, photons);
+        }
+        Ok((Some(light.finish()), n_stored))
+    }
+}
+
+/// How the photons of passes are followed.
+struct Pass<'a, 's> {
+    emission: &'a Emission<'s>,
+    world: World<'s>,
+    wanted: Wanted,
+    /// Those of all passes.
+    photons: Photons,
+    /// Photons of a pass.
+    n: u64,
+    n_passes: u32,
+    /// Photons that may be stored at once.
+    most: u64,
+}
+
+impl Pass<'_, '_> {
+    /// Follows a few photons and tells from them whether those of a pass will fit.
+    fn plan(&self, context: &RenderContext<'_>) -> Result<(), RenderError> {
+        if self.n <= PLANNED {
+            return Ok(());
+        }
+        let silent = RenderContext {
+            progress: &|_| {},
+            ..*context
+        };
+        let n_stored = self.stored(0..PILOTS, &silent)?.len();
+        let expected = self.n / PILOTS * n_stored as u64;
+        self.check(expected)
+    }
+
+    fn check(&self, n: u64) -> Result<(), RenderError> {
+        if n <= self.most {
+            return Ok(());
+        }
+        Err(RenderError::TooManyPhotons { n, most: self.most })
+    }
+
+    /// The photons of a pass, counted from 0.
+    fn photons(&self, pass: u32, context: &RenderContext<'_>) -> Result<Vec<Stored>, RenderError> {
+        let begin = u64::from(pass) * self.n;
+        let progress = |progress: Progress| {
+            (context.progress)(Progress {
+                done: begin + progress.done,
+                total: u64::from(self.n_passes) * self.n,
+            });
+        };
+        let context = RenderContext {
+            progress: &progress,
+            ..*context
+        };
+        self.stored(begin..begin + self.n, &context)
+    }
+
+    /// Those of a range of photons that are wanted, where they arrive.
+    fn stored(
+        &self,
+        range: Range<u64>,
+        context: &RenderContext<'_>,
+    ) -> Result<Vec<Stored>, RenderError> {
+        let World { scene, center } = self.world;
         let collector = || Collector {
             scene,
-            wanted,
+            wanted: self.wanted,
             center,
             photons: Vec::new(),
+        };
+        let photons = Photons {
+            range,
+            ..self.photons.clone()
         };
         let mut stored: Vec<Stored> = Vec::new();
         let mut n_stored = 0;
         let join = |block: Collector<'_>| {
             n_stored += block.photons.len() as u64;
-            if n_stored <= self.most_stored {
+            if n_stored <= self.most {
                 stored.extend(block.photons);
             }
         };
-        let seed = rng::hash(&[context.seed, aim as u64]);
-        let photons = Photons::all(n, seed, LONGEST_PATH);
-        trace(
-            &Emission::new(scene, aim),
-            &photons,
-            context,
-            collector,
-            join,
-        )?;
-        if n_stored > self.most_stored {
-            return Err(RenderError::TooManyPhotons {
-                n: n_stored,
-                most: self.most_stored,
-            });
-        }
-        let map = IrradianceMap::new(scene, stored, center, self.photon_area);
-        Ok((map, n_stored))
+        trace(self.emission, &photons, context, collector, join)?;
+        self.check(n_stored)?;
+        Ok(stored)
     }
 }

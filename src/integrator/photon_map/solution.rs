@@ -1,13 +1,14 @@
 //! The maps of a scene as bytes, and back.
 //!
 //! Little-endian numbers, one after the other: photons emitted and stored, then each map as its middle, its size of pieces, its layers
-//! of samples and its pieces. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
+//! of samples, its pieces and its places. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
 //! its surroundings), of which there are fewer than photons. Whoever reads trusts nothing: counts are compared with the bytes that are
 //! left before memory is asked for, and numbers that no solution has are refused.
 
 use super::estimate::Hidden;
 use super::final_gather::FinalGather;
-use super::irradiance::{IrradianceMap, Layer, PieceLight, Sample};
+use super::irradiance::{IrradianceMap, Layer, Sample};
+use super::pieces::PieceLight;
 use super::stored::PackedNormal;
 use crate::color::Rgb;
 use crate::integrator::Unreadable;
@@ -20,6 +21,9 @@ const SAMPLE: usize = 35;
 
 /// Bytes of what is hidden from a sample.
 const HIDDEN: usize = 14;
+
+/// Bytes of a place without light.
+const PLACE: usize = 18;
 
 /// Bytes of a piece.
 const PIECE: usize = 33;
@@ -101,6 +105,12 @@ fn put_map(out: &mut Vec<u8>, map: &IrradianceMap) {
         out.push(u8::from(piece.key.1));
         let light = piece.irradiance.to_array();
         light.iter().for_each(|c| put(out, c.to_le_bytes()));
+    }
+    put(out, (map.places.len() as u64).to_le_bytes());
+    for (position, normal) in &map.places {
+        let position = position.to_array();
+        position.iter().for_each(|c| put(out, c.to_le_bytes()));
+        normal.0.iter().for_each(|c| put(out, c.to_le_bytes()));
     }
 }
 
@@ -197,11 +207,15 @@ impl Reader<'_> {
         if !pieces.is_sorted_by(|a, b| a.key < b.key) {
             return Err(Unreadable("its pieces are not in order"));
         }
+        let n_places = self.count(PLACE)?;
+        let places = (0..n_places).map(|_| Ok((self.vec3()?, self.normal()?)));
+        let places = places.collect::<Result<Vec<_>, _>>()?;
         Ok(IrradianceMap {
             center,
             radius,
             layers,
             pieces,
+            places,
         })
     }
 
@@ -212,10 +226,17 @@ impl Reader<'_> {
         Ok(Layer::new(samples.collect::<Result<_, _>>()?, spacing))
     }
 
+    fn normal(&mut self) -> Result<PackedNormal, Unreadable> {
+        let mut normal = [0; 3];
+        for coordinate in &mut normal {
+            *coordinate = i16::from_le_bytes(self.take()?);
+        }
+        Ok(PackedNormal(normal))
+    }
+
     fn sample(&mut self) -> Result<Sample, Unreadable> {
         let (position, irradiance, radius) = (self.vec3()?, self.vec3()?, self.f32()?);
-        let coordinate = |reader: &mut Self| Ok(i16::from_le_bytes(reader.take()?));
-        let normal = [coordinate(self)?, coordinate(self)?, coordinate(self)?];
+        let normal = self.normal()?;
         let mut bits = [0; 16];
         if self.flag()? {
             bits[..HIDDEN].copy_from_slice(&self.take::<HIDDEN>()?);
@@ -225,13 +246,7 @@ impl Reader<'_> {
         if irradiance.min_element() < 0.0 || radius <= 0.0 {
             return Err(Unreadable("a sample has negative light or no size"));
         }
-        Ok(Sample::of((
-            position,
-            PackedNormal(normal),
-            irradiance,
-            radius,
-            hidden,
-        )))
+        Ok(Sample::of((position, normal, irradiance, radius, hidden)))
     }
 
     fn piece(&mut self) -> Result<PieceLight, Unreadable> {
