@@ -7,13 +7,16 @@
 //! for radii that depend on the pass alone.
 //!
 //! The kernel is kept for a few passes and then takes the size it should have had reached, so that the surface under it is measured
-//! only so often as passes double, twice. Places are found by the first pass, as near to each other as the last kernel needs.
+//! only so often as passes double, twice. Places are as near to each other as the last kernel needs. Where the first pass has left gaps
+//! later ones find places; what these missed is made up for.
 
 use super::grid::Grid;
 use super::irradiance::{IrradianceMap, Layer, SPACING};
 use super::pieces::{PieceLight, split_off_pieces, together};
 use super::radius::Radii;
-use super::spots::{SpotLayer, SpotLight, World, anywhere, scene_size, spots};
+use super::spots::{
+    Key, SpotLayer, SpotLight, World, anywhere, cells, newly_found, scene_size, spots,
+};
 use super::stored::{PackedNormal, Stored};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -30,6 +33,9 @@ pub(super) struct Progressive<'s> {
     layers: Vec<SpotLayer>,
     pieces: Vec<PieceLight>,
     places: Vec<(Vec3, PackedNormal)>,
+    /// Cells of the coarsest layer in which there are places, sorted.
+    known: Vec<Key>,
+    n_passes: u32,
     /// The present radius of kernels in those of the first pass.
     shrunk: f64,
 }
@@ -51,11 +57,24 @@ impl<'s> Progressive<'s> {
         } else {
             Vec::new()
         };
+        let width = radii.largest * SPACING * last;
+        let known = cells(&photons, width);
+        let mut layers = spots(&world, photons, radii, SPACING * last);
+        if layers.first().is_none_or(|layer| layer.spacing != width) {
+            let empty = SpotLayer {
+                spacing: width,
+                radius: radii.largest,
+                spots: Vec::new(),
+            };
+            layers.insert(0, empty);
+        }
         Some(Self {
             world,
             usual,
             places,
-            layers: spots(&world, photons, radii, SPACING * last),
+            known,
+            n_passes,
+            layers,
             pieces,
             shrunk: 1.0,
         })
@@ -80,10 +99,31 @@ impl<'s> Progressive<'s> {
             });
             photons = grid.into_things();
         }
+        self.fill_gaps(pass, &photons);
+    }
+
+    /// Finds places where there were none; they count from the next pass on, because that photons found them is no chance.
+    fn fill_gaps(&mut self, pass: u32, photons: &[Stored]) {
+        let Some(layer) = self.layers.first_mut() else {
+            return;
+        };
+        if pass < self.n_passes {
+            let size = (layer.radius * self.shrunk, layer.spacing);
+            let mut found = newly_found(&self.world, photons, size, &mut self.known);
+            found.iter_mut().for_each(|spot| spot.missed = pass);
+            layer.spots.extend(found);
+        }
     }
 
     /// What views ask for.
-    pub(super) fn finish(self) -> IrradianceMap {
+    pub(super) fn finish(mut self) -> IrradianceMap {
+        for layer in &mut self.layers {
+            for spot in layer.spots.iter_mut().filter(|spot| spot.missed > 0) {
+                let seen = f64::from(self.n_passes - spot.missed);
+                spot.irradiance = spot.irradiance * (f64::from(self.n_passes) / seen);
+            }
+        }
+        self.layers.retain(|layer| !layer.spots.is_empty());
         let layers = self.layers.into_iter().rev().map(|layer| {
             let samples = layer.spots.iter().map(SpotLight::sample);
             Layer::new(samples.collect(), layer.spacing)

@@ -63,6 +63,8 @@ pub(super) struct SpotLight {
     measured: Measured,
     /// W/m².
     pub(super) irradiance: Rgb,
+    /// Passes before it was there.
+    pub(super) missed: u32,
 }
 
 /// Places of one density.
@@ -76,7 +78,7 @@ pub(super) struct SpotLayer {
 }
 
 /// A cell, and one of six main directions of the normal.
-type Key = ([i32; 3], u8);
+pub(super) type Key = ([i32; 3], u8);
 
 impl Place {
     fn of(photon: &Stored) -> Self {
@@ -115,6 +117,7 @@ impl SpotLight {
             radius,
             measured: measure(world.scene, world.center + position, normal, radius),
             irradiance: Rgb::BLACK,
+            missed: 0,
         }
     }
 
@@ -140,6 +143,7 @@ impl SpotLight {
     pub(super) fn resized(&self, world: &World<'_>, radius: f64) -> Self {
         Self {
             irradiance: self.irradiance,
+            missed: self.missed,
             ..Self::new(world, self.place, radius)
         }
     }
@@ -266,6 +270,27 @@ impl<'s> Level<'s> {
             ..self
         }
     }
+}
+
+/// The cells of this width that photons lie in, sorted.
+pub(super) fn cells(photons: &[Stored], width: f64) -> Vec<Key> {
+    let places = thinned(photons, Vec::new(), width, |_| true);
+    places.iter().map(|place| place.key(width)).collect()
+}
+
+/// A place for each of the cells of this width that photons lie in and that are not `known`, which are then; dark as yet.
+pub(super) fn newly_found(
+    world: &World<'_>,
+    photons: &[Stored],
+    (radius, width): (f64, f64),
+    known: &mut Vec<Key>,
+) -> Vec<SpotLight> {
+    let is_new = |place: &Place| known.binary_search(&place.key(width)).is_err();
+    let places = thinned(photons, Vec::new(), width, is_new);
+    known.extend(places.iter().map(|place| place.key(width)));
+    known.sort_unstable();
+    let spot = |place: &Place| SpotLight::new(world, *place, radius);
+    places.par_iter().map(spot).collect()
 }
 
 /// Places of photons about so far apart, whatever the light there.
