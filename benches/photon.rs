@@ -149,15 +149,14 @@ fn main() {
         let (by_grid, found) = rate(&queries, |query| {
             let mut n = 0.0;
             grid.near(query, |p| {
-                n += f64::from(u8::from((*p - query).length_squared() < square))
+                n += f64::from(u8::from((*p - query).length_squared() < square));
             });
             n
         });
         let (by_tree, same) = rate(&queries, |query| {
+            let place = query.to_array();
             let mut n = 0.0;
-            let search = tree
-                .query(&query.to_array())
-                .within::<SquaredEuclidean<f64>>(square);
+            let search = tree.query(&place).within::<SquaredEuclidean<f64>>(square);
             search
                 .unsorted()
                 .visit(|item| n += f64::from(u8::from(item.distance < square)));
@@ -173,9 +172,8 @@ fn main() {
     for n in [12, 100, 500] {
         let n = NonZeroUsize::new(n).unwrap();
         let (by_tree, _) = rate(&queries, |query| {
-            let search = tree
-                .query(&query.to_array())
-                .nearest_n::<SquaredEuclidean<f64>>(n);
+            let place = query.to_array();
+            let search = tree.query(&place).nearest_n::<SquaredEuclidean<f64>>(n);
             search.execute().last().map_or(0.0, |last| last.distance)
         });
         println!("{n} nearest by the k-d tree: {by_tree:.0} searches/s");

@@ -120,7 +120,7 @@ impl<'s> Progressive<'s> {
         for layer in &mut self.layers {
             for spot in layer.spots.iter_mut().filter(|spot| spot.missed > 0) {
                 let seen = f64::from(self.n_passes - spot.missed);
-                spot.irradiance = spot.irradiance * (f64::from(self.n_passes) / seen);
+                spot.irradiance *= f64::from(self.n_passes) / seen;
             }
         }
         self.layers.retain(|layer| !layer.spots.is_empty());
