@@ -266,7 +266,7 @@ options! {
     /// Patches of radiosity are split where light differs over them by more than this part of it
     subdivision_threshold: Threshold = "0.15", "subdivision-threshold", "X", Render, Solution, PICTURING;
     /// How often they are split at most
-    subdivision_depth: SplitDepth = "0", "subdivision-depth", "N", Render, Solution, PICTURING;
+    subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, PICTURING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says

@@ -393,6 +393,7 @@ impl Radiosity {
             depth: self.subdivision_depth,
             most: (self.memory / BYTES_PER_PATCH).min(u64::from(u32::MAX) / 2) as usize,
             size: size_of_scene(carrier.scene),
+            cancel: context.cancel,
         };
         if patches.len() <= FEW_PATCHES {
             let light = light_of(patches, solved);

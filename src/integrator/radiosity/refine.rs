@@ -7,10 +7,11 @@
 use super::mesh::{Mesh, NONE};
 use super::vertices::{Vertices, crowded};
 use crate::color::Rgb;
+use crate::integrator::CancelToken;
 
 /// When elements are split.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Refinement {
+pub(super) struct Refinement<'a> {
     /// Difference over an element as wide as a patch, as a part of the light of its patch.
     pub(super) threshold: f64,
     /// How often a patch is split at most.
@@ -19,6 +20,8 @@ pub(super) struct Refinement {
     pub(super) most: usize,
     /// Size of the scene, metres.
     pub(super) size: f64,
+    /// The wish to stop.
+    pub(super) cancel: &'a CancelToken,
 }
 
 /// Splits elements and finds the light of the new ones by `gathered`, of nodes from a number on, front and back. `light` tells the
@@ -26,7 +29,7 @@ pub(super) struct Refinement {
 pub(super) fn refine(
     mesh: &mut Mesh,
     irradiance: &mut Vec<[Rgb; 2]>,
-    refinement: &Refinement,
+    refinement: &Refinement<'_>,
     light: &[f64],
     gathered: impl Fn(&Mesh, usize) -> Vec<[Rgb; 2]>,
 ) {
@@ -47,7 +50,7 @@ pub(super) fn refine(
                 !mesh.is_tiny(*node) && range(&vertices, *node, own) * width > limit
             })
             .collect();
-        if wanted.is_empty() {
+        if wanted.is_empty() || refinement.cancel.is_cancelled() {
             return;
         }
         let start = mesh.nodes.len();
@@ -61,13 +64,14 @@ pub(super) fn refine(
 }
 
 /// Splits what has neighbours more than one split smaller.
-fn balance(mesh: &mut Mesh, refinement: &Refinement) {
+fn balance(mesh: &mut Mesh, refinement: &Refinement<'_>) {
     loop {
         let large: Vec<u32> = crowded(mesh, refinement.size)
             .into_iter()
             .filter(|node| !mesh.is_tiny(*node))
             .collect();
-        if large.is_empty() || mesh.nodes.len() + 4 * large.len() > refinement.most {
+        let n_cells = mesh.nodes.len() + 4 * large.len();
+        if large.is_empty() || n_cells > refinement.most || refinement.cancel.is_cancelled() {
             return;
         }
         for node in large {

@@ -217,3 +217,43 @@ fn solvers_agree() {
         }
     }
 }
+
+#[test]
+fn round_faces_are_split_as_often_as_wanted_and_no_more() {
+    // At the middle of a disk and the poles of a ball edges have no length: their own corners are not smaller neighbours.
+    for shape in [Shape::Sphere { radius: 1.0 }, Shape::Disk { radius: 1.0 }] {
+        let room = Room::default().with(
+            shape.clone(),
+            DAffine3::IDENTITY,
+            Material::lambert(gray(0.5)),
+        );
+        let scene = room.scene().unwrap();
+        let mut mesh = Laid::new(&scene).mesh;
+        let (n, cancel) = (mesh.patches.len(), CancelToken::default());
+        let refinement = Refinement {
+            threshold: 0.0,
+            depth: 2,
+            most: 1 << 20,
+            size: 2.0,
+            cancel: &cancel,
+        };
+        // Light that differs from node to node, so that all are split.
+        let light = |mesh: &Mesh, first: usize| -> Vec<[Rgb; 2]> {
+            let nodes = first..mesh.nodes.len();
+            nodes.map(|at| [gray((at % 7) as f64); 2]).collect()
+        };
+        let mut irradiance = light(&mesh, 0);
+        refine::refine(
+            &mut mesh,
+            &mut irradiance,
+            &refinement,
+            &vec![1.0; n],
+            light,
+        );
+        let elements = mesh.elements().count();
+        assert!(
+            elements > n && elements <= 16 * n,
+            "{shape:?}: {elements} of {n}"
+        );
+    }
+}

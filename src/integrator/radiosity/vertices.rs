@@ -147,7 +147,8 @@ impl Vertices {
     }
 }
 
-/// Elements with edges at which others end that are more than one split smaller: corners lie at a quarter of the edge.
+/// Elements with edges at which others end that are more than one split smaller: corners lie at a quarter of the edge. An edge
+/// without length, as at the middle of a disk, has its own corners there, which do not count.
 pub(super) fn crowded(mesh: &Mesh, size: f64) -> Vec<u32> {
     let mut welder = Welder::new(size);
     for node in mesh.elements() {
@@ -159,10 +160,15 @@ pub(super) fn crowded(mesh: &Mesh, size: f64) -> Vec<u32> {
         let cell = &mesh.nodes[*node as usize].cell;
         let chart = &mesh.charts[cell.chart as usize].chart;
         let ends = mesh.corners(cell);
+        let vertex = |uv: DVec2| {
+            let point = chart.point(uv);
+            welder.find(point.position, point.normal)
+        };
         EDGES[ends.len() - 3].iter().any(|[a, b]| {
+            let own = [vertex(ends[*a]), vertex(ends[*b])];
             [0.25, 0.75].into_iter().any(|share| {
-                let point = chart.point(ends[*a].lerp(ends[*b], share));
-                welder.find(point.position, point.normal).is_some()
+                let found = vertex(ends[*a].lerp(ends[*b], share));
+                found.is_some() && !own.contains(&found)
             })
         })
     };
