@@ -150,27 +150,24 @@ impl Scene {
         if items.len() > FEW {
             return Piece::Large;
         }
-        let flat = |item: &Item| vector_area(group, *item, &to_world);
-        let Some(areas) = items.iter().flatten().map(flat).collect::<Option<Vec<_>>>() else {
-            return Piece::Large;
-        };
-        let normal = areas
-            .first()
-            .map_or(DVec3::ZERO, |area| area.normalize_or_zero());
-        if areas
-            .iter()
-            .any(|area| area.dot(normal) < NEARLY_FLAT * area.length())
-        {
-            return Piece::Large;
+        let mut normal = DVec3::ZERO;
+        let (mut area, mut bounds) = (0.0, Bounds3::EMPTY);
+        for item in items.iter().flatten() {
+            let Some(own) = vector_area(group, *item, &to_world) else {
+                return Piece::Large;
+            };
+            if bounds.is_empty() {
+                normal = own.normalize_or_zero();
+            }
+            if own.dot(normal) < NEARLY_FLAT * own.length() {
+                return Piece::Large;
+            }
+            area += own.length();
+            bounds = bounds.union(&item_box(group, *item, &to_world));
         }
-        let boxes = items
-            .iter()
-            .flatten()
-            .map(|item| item_box(group, *item, &to_world));
-        let bounds = boxes.fold(Bounds3::EMPTY, |all, one| all.union(&one));
         Piece::Flat {
             first: PrimitiveId(primitive.0 - u64::from(number - first)),
-            area: areas.iter().map(|area| area.length()).sum(),
+            area,
             size: bounds.diagonal().length(),
         }
     }

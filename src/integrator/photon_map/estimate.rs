@@ -137,7 +137,8 @@ pub(super) fn estimate(
     let mut flux = Rgb::BLACK;
     let (mut powers, mut squares) = ([0.0; 2], 0.0);
     let (mut weights, mut moment) = (0.0, DVec2::ZERO);
-    photons.near(spot.position, |photon| {
+    let thickness = THICKNESS * radius;
+    photons.near_plane(spot.position, spot.normal, thickness, |photon| {
         let to = photon.position() - spot.position;
         let share = to.length_squared() / (radius * radius);
         if share >= 1.0 || photon.normal().dot(spot.normal) <= SAME_NORMAL {

@@ -1,13 +1,24 @@
 //! Points found by place: a hash grid.
 //!
 //! Each point lies in one cell of a grid as wide as the search, each cell in one slot of a table; points are sorted by slot once.
-//! A search looks into the slots of the 27 cells round it, each slot once even if two cells share it, and tests distances.
+//! A search looks into the slots of those of the 27 cells round it that it reaches, each slot once even if two cells share it.
+//! Most searches are for points on one surface: they leave out the cells that its tangent plane does not pass. Cells of a block of
+//! 4 × 4 × 4 lie together in memory.
 //!
 //! A fixed radius asks for no tree: `light.md` §0.3 measured 7 million searches per second for such a grid against 0.8 million of
 //! a k-d tree (kiddo 6.3, two cores, 80 photons found), and coincident points are nothing special to it.
 
 use crate::math::rng;
 use glam::{DVec3, IVec3};
+
+/// Cells along the edge of a block, as a power of two.
+const BLOCK: i32 = 2;
+
+/// What rounding may move cells by, as a share of them.
+const SLACK: f64 = 1e-9;
+
+/// How wide the cells of an [`Outline`] are, in radii of its searches.
+const OUTLINE: f64 = 4.0;
 
 /// Things with a place, sorted for searches of one radius.
 #[derive(Clone, Debug)]
@@ -69,15 +80,31 @@ impl<T: Copy> Grid<T> {
     }
 
     /// Shows `visit` all things that may be within the grid's radius of `center`, each once, and some that are not.
-    pub fn near(&self, center: DVec3, mut visit: impl FnMut(&T)) {
+    pub fn near(&self, center: DVec3, visit: impl FnMut(&T)) {
+        self.near_plane(center, DVec3::ZERO, f64::INFINITY, visit);
+    }
+
+    /// The same for things not farther than `thickness` metres from the plane through `center` with this unit normal.
+    pub fn near_plane(
+        &self,
+        center: DVec3,
+        normal: DVec3,
+        thickness: f64,
+        mut visit: impl FnMut(&T),
+    ) {
         let n_slots = self.starts.len() - 1;
         let middle = cell(center, self.cell);
+        let reach = Reach::new(center, middle, self.cell, normal, thickness);
         let mut seen = [usize::MAX; 27];
         let mut n_seen = 0;
         for dz in -1..=1 {
             for dy in -1..=1 {
                 for dx in -1..=1 {
-                    let slot = slot(middle.wrapping_add(IVec3::new(dx, dy, dz)), n_slots);
+                    let step = IVec3::new(dx, dy, dz);
+                    if !reach.holds(step) {
+                        continue;
+                    }
+                    let slot = slot(middle.wrapping_add(step), n_slots);
                     let (begin, end) = (self.starts[slot] as usize, self.starts[slot + 1] as usize);
                     if begin == end || seen[..n_seen].contains(&slot) {
                         continue;
@@ -91,14 +118,95 @@ impl<T: Copy> Grid<T> {
     }
 }
 
+/// Which of the cells round a point a search reaches.
+struct Reach {
+    /// Squared distance of the point to the cells before, at and after it along each axis, in cells.
+    gaps: [DVec3; 3],
+    /// Height over the plane of the middle of the point's own cell, and how it changes along each axis, in cells.
+    height: f64,
+    slope: DVec3,
+    /// How high or low the middle of a cell may be that the search reaches.
+    most: f64,
+}
+
+impl Reach {
+    fn new(center: DVec3, middle: IVec3, width: f64, normal: DVec3, thickness: f64) -> Self {
+        let within = center / width - middle.as_dvec3();
+        // Where cells cannot be told apart any more: all of them.
+        let is_known = within.cmpge(DVec3::ZERO).all() && within.cmple(DVec3::ONE).all();
+        let (within, normal, thickness) = if is_known {
+            (within, normal, thickness / width)
+        } else {
+            (DVec3::splat(0.5), DVec3::ZERO, f64::INFINITY)
+        };
+        let rest = DVec3::ONE - within;
+        Self {
+            gaps: [within * within, DVec3::ZERO, rest * rest],
+            height: normal.dot(DVec3::splat(0.5) - within),
+            slope: normal,
+            most: (thickness + 0.5 * normal.abs().element_sum()) * (1.0 + SLACK),
+        }
+    }
+
+    /// Whether the cell so many steps away is reached.
+    fn holds(&self, step: IVec3) -> bool {
+        let [x, y, z] = step.to_array().map(|step| (step + 1) as usize);
+        let gap = self.gaps[x].x + self.gaps[y].y + self.gaps[z].z;
+        let height = self.height + self.slope.dot(step.as_dvec3());
+        gap <= 1.0 + SLACK && height.abs() <= self.most
+    }
+}
+
+/// Rough places of things, for a quick no: a bit for each slot of cells that searches from there may find something in.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    bits: Vec<u64>,
+    cell: f64,
+}
+
+impl Outline {
+    /// Of things at these places, for searches of up to `radius` metres.
+    pub(super) fn new(places: impl ExactSizeIterator<Item = DVec3>, radius: f64) -> Self {
+        let cell = OUTLINE * radius;
+        let n_words = places.len().next_power_of_two().div_ceil(64).max(1);
+        let mut outline = Self {
+            bits: vec![0; n_words],
+            cell,
+        };
+        for place in places {
+            let [low, high] = [-radius, radius].map(|by| self::cell(place + by, cell));
+            for z in low.z..=high.z {
+                for y in low.y..=high.y {
+                    for x in low.x..=high.x {
+                        let bit = slot(IVec3::new(x, y, z), n_words * 64);
+                        outline.bits[bit / 64] |= 1 << (bit % 64);
+                    }
+                }
+            }
+        }
+        outline
+    }
+
+    /// Whether something may be within the radius.
+    pub(super) fn is_near(&self, center: DVec3) -> bool {
+        let bit = slot(cell(center, self.cell), self.bits.len() * 64);
+        self.bits[bit / 64] >> (bit % 64) & 1 == 1
+    }
+}
+
 /// The cell of a point; beyond ± 2³¹ cells the last one.
 pub(super) fn cell(point: DVec3, width: f64) -> IVec3 {
     (point / width).floor().as_ivec3()
 }
 
 fn slot(cell: IVec3, n_slots: usize) -> usize {
-    let [x, y, z] = cell.to_array().map(|c| u64::from(c.cast_unsigned()));
-    rng::mix((x << 32 | y).wrapping_add(rng::mix(z.wrapping_add(1)))) as usize & (n_slots - 1)
+    let [x, y, z] = (cell >> BLOCK)
+        .to_array()
+        .map(|c| u64::from(c.cast_unsigned()));
+    let block = rng::mix((x << 32 | y).wrapping_add(rng::mix(z.wrapping_add(1))));
+    let inside = cell & ((1 << BLOCK) - 1);
+    let inside = inside.x | inside.y << BLOCK | inside.z << (2 * BLOCK);
+    (block as usize ^ inside as usize) & (n_slots - 1)
 }
 
 #[cfg(test)]
@@ -121,6 +229,19 @@ mod tests {
                 let mut found = 0;
                 grid.near(center, |p| found += usize::from(is_near(&p)));
                 assert_eq!(found, truth, "{radius}");
+
+                let normal = point(20_000 + i).normalize();
+                let thickness = 0.1 * radius;
+                let is_flat =
+                    |p: &&DVec3| is_near(p) && (**p - center).dot(normal).abs() <= thickness;
+                let truth = points.iter().filter(is_flat).count();
+                let mut found = 0;
+                let count = |p: &DVec3| found += usize::from(is_flat(&p));
+                grid.near_plane(center, normal, thickness, count);
+                assert_eq!(found, truth, "{radius}");
+                let outline = Outline::new(points.iter().copied(), radius);
+                let any = points.iter().any(|p| is_near(&p));
+                assert!(outline.is_near(center) || !any, "{radius}");
             }
         }
     }
@@ -148,7 +269,9 @@ mod tests {
         none.near(DVec3::ZERO, |_| panic!());
         let far = Grid::new(vec![DVec3::splat(1e300), DVec3::splat(-1e300)], 1.0, |p| *p);
         let mut found = 0;
-        far.near(DVec3::splat(1e300), |_| found += 1);
+        far.near_plane(DVec3::splat(1e300), DVec3::X, 0.1, |_| found += 1);
         assert!(found >= 1);
+        let outline = Outline::new([DVec3::splat(1e300)].into_iter(), 1.0);
+        assert!(outline.is_near(DVec3::splat(1e300)));
     }
 }

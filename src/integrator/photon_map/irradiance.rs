@@ -7,7 +7,7 @@
 //! Where kernels differ in size ([`spots`](super::spots)) there is a layer of samples for each size. Fine ones win where they are.
 
 use super::estimate::Hidden;
-use super::grid::Grid;
+use super::grid::{Grid, Outline};
 use super::pieces::PieceLight;
 use super::stored::{PackedNormal, facing};
 use crate::color::Rgb;
@@ -100,6 +100,7 @@ impl Sample {
 pub(super) struct Layer {
     spacing: f64,
     samples: Grid<Sample>,
+    outline: Outline,
 }
 
 /// The light of one map.
@@ -123,6 +124,7 @@ impl Layer {
         let place = |sample: &Sample| sample.position.as_dvec3();
         Self {
             spacing,
+            outline: Outline::new(samples.iter().map(place), USE * spacing),
             samples: Grid::new(samples, USE * spacing, place),
         }
     }
@@ -140,20 +142,28 @@ impl Layer {
     /// Weighted sum of the irradiance near a point, and the weights.
     fn near(&self, scene: &Scene, center: DVec3, position: DVec3, normal: DVec3) -> (DVec3, f64) {
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        self.samples.near(position, |sample| {
-            if let Some(share) = self.share(sample, position, normal)
-                && !sample.is_hidden(scene, center, position)
-            {
-                let weight = (1.0 - share) * (1.0 - share);
-                sum += sample.irradiance.as_dvec3() * weight;
-                weights += weight;
-            }
-        });
+        if !self.outline.is_near(position) {
+            return (sum, weights);
+        }
+        let thickness = THICKNESS * self.spacing;
+        self.samples
+            .near_plane(position, normal, thickness, |sample| {
+                if let Some(share) = self.share(sample, position, normal)
+                    && !sample.is_hidden(scene, center, position)
+                {
+                    let weight = (1.0 - share) * (1.0 - share);
+                    sum += sample.irradiance.as_dvec3() * weight;
+                    weights += weight;
+                }
+            });
         (sum, weights)
     }
 
     /// The nearest sample in the cell of the grid round a point.
     fn one(&self, position: DVec3, normal: DVec3) -> Option<Sample> {
+        if !self.outline.is_near(position) {
+            return None;
+        }
         let mut best: Option<(f64, Sample)> = None;
         self.samples.around(position, |sample| {
             if let Some(share) = self.share(sample, position, normal)
