@@ -10,6 +10,7 @@
 //! Every method is asked through the same ray queries of the [`scene`](crate::scene), the same sources ([`sources`]) and the
 //! same [`sampler`](crate::sampler), so that a fix is made once.
 
+mod carrier;
 mod clear_shadow;
 mod context;
 pub mod driver;
@@ -25,6 +26,8 @@ pub mod raytracer;
 pub mod requirements;
 mod solution;
 pub mod sources;
+mod split;
+mod viewer;
 
 pub use context::{CancelToken, Progress, RayCounts, RenderContext, RenderError};
 pub use path::Path;

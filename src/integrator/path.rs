@@ -69,7 +69,7 @@ pub enum Strategies {
 /// A bound that stays below 1 would give paths in a room of albedo ρ, for ρ² above it, weights whose mean square grows with
 /// each event: no finite variance. Under this one the chance to be alive falls as `(3000/n)³`, so the mean square grows as n³
 /// at most, which `ρ^(2n)` outweighs for every ρ < 1; and up to ρ = 0.999 it never binds.
-fn highest_survival(n_scatterings: u32) -> f64 {
+pub(super) fn highest_survival(n_scatterings: u32) -> f64 {
     1.0 - 3.0 / (f64::from(n_scatterings) + 3000.0)
 }
 

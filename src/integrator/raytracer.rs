@@ -12,17 +12,15 @@
 use super::medium::{Bodies, Media, left_after};
 use super::path::Strategies;
 use super::sources::{Reach, Shading, Shadows, Sources};
+use super::split::directions;
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
 use crate::light::Receiver;
-use crate::material::{
-    LobeKind, Optics, ScatterNumbers, ScatterSample, Scattering, ScatteringFrame, Side, Transport,
-    fresnel,
-};
+use crate::material::{Optics, Scattering, ScatteringFrame, Side};
 use crate::math::Ray;
-use crate::sampler::{Sampler, Use};
+use crate::sampler::Sampler;
 use crate::scene::{Scene, SurfacePoint};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Settings of the ray tracer.
 #[derive(Clone, Debug, PartialEq)]
@@ -227,7 +225,8 @@ impl RaytracerEstimator<'_> {
                 sides: [Side::default(); 2],
                 lobes: lobe,
             };
-            for (sample, share) in vertex.directions(&alone, sampler).into_iter().flatten() {
+            let directions = directions(&alone, &vertex.frame, vertex.wo, sampler);
+            for (sample, share) in directions.into_iter().flatten() {
                 let weight = met * sample.weight * share;
                 if weight.max_channel() < self.settings.least_weight {
                     continue;
@@ -269,64 +268,4 @@ struct Vertex<'s> {
     optics: Optics<'s>,
     frame: ScatteringFrame,
     wo: DVec3,
-}
-
-impl Vertex<'_> {
-    /// The directions into which a lobe sends light, each with the share it has besides the weight of its sample: both of
-    /// smooth glass, the one of a mirror, one of a rough lobe.
-    fn directions(
-        &self,
-        alone: &Scattering<'_>,
-        sampler: &Sampler,
-    ) -> [Option<(ScatterSample, f64)>; 2] {
-        let lobe = &alone.lobes[0];
-        let toward = |choice: f64| {
-            let numbers = ScatterNumbers {
-                direction: sampler.point(Use::Direction),
-                lobe: DVec2::new(0.0, choice),
-            };
-            alone.sample(&self.frame, self.wo, numbers, Transport::Radiance)
-        };
-        match lobe.kind {
-            LobeKind::Dielectric { ior, .. } if lobe.is_delta() => {
-                let eta = if self.frame.is_in_front(self.wo) {
-                    ior
-                } else {
-                    1.0 / ior
-                };
-                let reflectance = fresnel::dielectric(self.facing_cos(), eta).reflectance;
-                let of_chance = |choice, share: f64| {
-                    let wanted = share > 0.0;
-                    wanted.then(|| toward(choice)).flatten().map(|s| (s, share))
-                };
-                [
-                    of_chance(0.0, reflectance),
-                    of_chance(1.0 - f64::EPSILON, 1.0 - reflectance),
-                ]
-            }
-            LobeKind::Through => [None, None],
-            LobeKind::Mirror(_) | LobeKind::Pane { .. } => [toward(0.0).map(|s| (s, 1.0)), None],
-            LobeKind::Phong { .. }
-            | LobeKind::Haze { .. }
-            | LobeKind::Rough { .. }
-            | LobeKind::Dielectric { .. } => {
-                [toward(sampler.point(Use::Lobe).y).map(|s| (s, 1.0)), None]
-            }
-        }
-    }
-
-    /// Cosine of the ray to the normal that mirrors; where a smoothed normal turns away, the true one takes its place.
-    fn facing_cos(&self) -> f64 {
-        let sign = if self.frame.is_in_front(self.wo) {
-            1.0
-        } else {
-            -1.0
-        };
-        let smoothed = self.frame.normal_s.dot(self.wo) * sign;
-        if smoothed > 0.0 {
-            smoothed
-        } else {
-            self.frame.normal_g.dot(self.wo) * sign
-        }
-    }
 }

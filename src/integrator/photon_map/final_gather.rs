@@ -8,17 +8,20 @@
 //!
 //! Rays that end nearer than the map can resolve gather on with one ray, so corners do not leak.
 //!
-//! Where indirect light changes slowly it comes from a [cache](super::cache). Elsewhere (in corners, on leaves, far away) each sample of
-//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up.
+//! Where indirect light changes slowly it comes from a [cache](super::cache). Elsewhere (in corners, far away) each sample of
+//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up. From leaves it is one, which also finds its part of
+//! the direct light.
 
 use super::cache::{Asked, IrradianceCache, Place};
 use super::hemisphere::{Gathered, Hemisphere};
 use super::irradiance::IrradianceMap;
 use super::stored::facing;
-use super::view::{Asker, View, frame_of};
+use super::view::{Asker, View};
 use crate::color::Rgb;
 use crate::integrator::RayCounts;
+use crate::integrator::carrier::{Carrier, frame_of};
 use crate::integrator::medium::Media;
+use crate::integrator::viewer::LastScattering;
 use crate::math::frame::Frame;
 use crate::math::{Ray, rng, warp};
 use crate::sampler::{Sampler, Use};
@@ -79,7 +82,7 @@ impl FinalGather {
 }
 
 /// One side of a matt surface at a point.
-pub(super) struct Spot<'a> {
+pub(super) struct OneSide<'a> {
     pub(super) point: &'a SurfacePoint,
     pub(super) piece: &'a Piece,
     /// Geometric normal of the side.
@@ -94,7 +97,7 @@ impl View<'_> {
     pub(super) fn accurate_irradiance(
         &self,
         gather: &FinalGather,
-        spot: &Spot<'_>,
+        spot: &OneSide<'_>,
         eye: f64,
         sampler: &Sampler,
         rays: &mut RayCounts,
@@ -117,37 +120,53 @@ impl View<'_> {
             return cached;
         }
         let n = gather.own_rays();
-        let own = self.irradiance_by_rays(spot, n, (FIRST_VERTEX, true), sampler, rays);
+        let own = self.irradiance_by_rays(spot, n, sampler, rays);
         cached * certain + own * (1.0 - certain)
     }
 
     /// Irradiance of a side by `n` rays whose random numbers begin at a vertex, W/m² per channel.
-    pub(super) fn irradiance_by_rays(
+    fn irradiance_by_rays(
         &self,
-        spot: &Spot<'_>,
+        spot: &OneSide<'_>,
         n: u32,
-        (first_vertex, may_go_on): (u32, bool),
+        sampler: &Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        let sum: Rgb = (0..n)
+            .map(|ray| {
+                let vertex = FIRST_VERTEX.wrapping_add(ray.wrapping_mul(VERTICES));
+                self.irradiance_by_ray(spot, (vertex, true), |_| None, sampler, rays)
+            })
+            .sum();
+        sum / f64::from(n.max(1))
+    }
+
+    /// Irradiance of a side by a ray whose random numbers begin at a vertex, W/m² per channel; `last` tells for its direction
+    /// whether sources that it meets count.
+    pub(super) fn irradiance_by_ray(
+        &self,
+        spot: &OneSide<'_>,
+        (vertex, may_go_on): (u32, bool),
+        last: impl FnOnce(DVec3) -> Option<LastScattering>,
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Rgb {
         let mut sampler = sampler.clone();
+        sampler.start_vertex(vertex);
         let frame = Frame::from_normal(spot.normal);
-        let mut sum = Rgb::BLACK;
-        for ray in 0..n {
-            let vertex = first_vertex.wrapping_add(ray.wrapping_mul(VERTICES));
-            sampler.start_vertex(vertex);
-            let wi = frame.to_world(warp::cosine_hemisphere(sampler.point(Use::Direction)));
-            let mut media = *spot.media;
-            let ends = [spot.wo, wi];
-            self.bodies
-                .cross(&mut media, spot.point, &frame_of(spot.point), ends);
-            let asker = Asker::Gather { vertex, may_go_on };
-            let ray = spot.point.spawn_ray(wi);
-            sum += self
-                .light_along(&ray, media, asker, &mut sampler, rays)
-                .radiance;
-        }
-        sum * (PI / f64::from(n.max(1)))
+        let wi = frame.to_world(warp::cosine_hemisphere(sampler.point(Use::Direction)));
+        let mut media = *spot.media;
+        let bodies = &self.viewer.carrier.bodies;
+        let ends = [spot.wo, wi];
+        bodies.cross(&mut media, spot.point, &frame_of(spot.point), ends);
+        let asker = Asker::Gather {
+            vertex,
+            may_go_on,
+            last: last(wi),
+        };
+        let ray = spot.point.spawn_ray(wi);
+        let arriving = self.light_along(&ray, media, asker, &mut sampler, rays);
+        arriving.radiance * PI
     }
 
     /// Gathers at place number `at` of the cache; `None` if its surface is not found again.
@@ -160,16 +179,17 @@ impl View<'_> {
         place: &Place,
         rays: &mut RayCounts,
     ) -> Option<Gathered> {
+        let Carrier { scene, bodies, .. } = &self.viewer.carrier;
         let normal = place.normal.as_dvec3();
         let lift = LIFT * gather.cache.spacing();
         let above = gather.cache.position(place) + normal * lift;
         let down = Ray::new(above, -normal).until(2.0 * lift);
         rays.closest += 1;
-        let point = self.scene.surface(&down, &self.scene.closest(&down)?);
+        let point = scene.surface(&down, &scene.closest(&down)?);
         if point.normal_g.dot(normal).abs() < IrradianceCache::SAME_NORMAL {
             return None;
         }
-        let media = self.bodies.around(above);
+        let media = bodies.around(above);
         let stream = rng::hash(&[gather.settings.seed, at as u64]);
         let side = facing(point.normal_g, normal);
         let hemisphere = Hemisphere::new(side, gather.settings.rays);
@@ -177,6 +197,7 @@ impl View<'_> {
             let asker = Asker::Gather {
                 vertex: 0,
                 may_go_on: true,
+                last: None,
             };
             self.light_along(&point.spawn_ray(wi), media, asker, sampler, rays)
         }))

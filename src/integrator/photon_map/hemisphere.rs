@@ -5,8 +5,8 @@
 //! translational one from how far away the surfaces are whose edges lie between two cells: seen from a point that has moved,
 //! the nearer of two surfaces has moved before the farther one.
 
-use super::view::Arriving;
 use crate::color::Rgb;
+use crate::integrator::viewer::Arriving;
 use crate::math::frame::Frame;
 use crate::math::functions::sin_cos;
 use crate::sampler::{Sampler, SamplerKind, Use};

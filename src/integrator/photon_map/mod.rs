@@ -35,9 +35,11 @@ mod spots;
 mod stored;
 mod view;
 
+use super::carrier::Carrier;
 use super::medium::Bodies;
 use super::photon::{Aim, Emission, Photons, trace};
 use super::sources::Sources;
+use super::viewer::Viewer;
 use super::{
     Integrator, Progress, RadianceEstimator, RenderContext, RenderError, Solution, Unreadable,
 };
@@ -151,13 +153,16 @@ impl PhotonMapping {
     }
 
     fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>, seed: u64) -> View<'s> {
-        View {
+        let carrier = Carrier {
             scene,
-            sources: Sources::new(scene),
             bodies: Bodies::new(scene),
+            max_depth: self.max_depth,
+        };
+        let sources = Sources::new(scene);
+        View {
+            viewer: Viewer { carrier, sources },
             gather: self.gather(scene, &maps, seed),
             maps,
-            max_depth: self.max_depth,
         }
     }
 

@@ -8,13 +8,13 @@
 //! Drawn are flat faces as they are, disks pixel by pixel, and round ones in small facets. Where a pixel shows a surface that is not
 //! matt, or nothing while there are infinite planes, a ray goes on through its middle.
 
-use super::carry::Carrier;
 use super::mesh::{Cell, Mesh};
 use super::rays::cell_point;
 use super::system::{FormFactors, Row};
 use crate::color::Rgb;
 use crate::geometry::chart::Form;
 use crate::integrator::RayCounts;
+use crate::integrator::carrier::Carrier;
 use crate::material::Transport;
 use crate::math::frame::Frame;
 use crate::math::rng;

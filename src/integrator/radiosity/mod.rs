@@ -14,15 +14,14 @@
 //! mesh      patches and elements         system      the equations, rows of form factors
 //! refine    smaller elements             gather      Gauss and Seidel
 //! vertices  between elements             shoot       progressive refinement
-//! carry     rays through mirrors, glass  stochastic  all patches at once, nothing stored
-//! source    what light sources give      rays        form factors by rays
-//! view      from the camera              hemicube    drawn onto half a cube
-//! polygon   between polygons, on paper   analytic    on paper where that holds
+//! source    what light sources give      stochastic  all patches at once, nothing stored
+//! view      from the camera              rays        form factors by rays
+//! polygon   between polygons, on paper   hemicube    drawn onto half a cube
+//!                                        analytic    on paper where that holds
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
 
 mod analytic;
-mod carry;
 mod gather;
 mod hemicube;
 mod mesh;
@@ -38,14 +37,16 @@ mod tests;
 mod vertices;
 mod view;
 
+use super::carrier::Carrier;
 use super::medium::Bodies;
 use super::sources::Sources;
+use super::viewer::Viewer;
 use super::{Integrator, Progress, RadianceEstimator, RenderContext, RenderError};
 use crate::color::Rgb;
 use crate::math::functions::ln;
 use crate::scene::Scene;
 use analytic::NearForms;
-use carry::Carrier;
+
 use hemicube::Hemicubes;
 use mesh::{Mesh, NONE};
 use rayon::prelude::*;
@@ -201,13 +202,14 @@ struct Sent {
 
 impl Radiosity {
     fn look<'s>(&self, scene: &'s Scene, solution: Arc<RadiositySolution>) -> View<'s> {
+        let carrier = Carrier {
+            scene,
+            bodies: Bodies::new(scene),
+            max_depth: self.max_depth,
+        };
+        let sources = Sources::new(scene);
         View {
-            carrier: Carrier {
-                scene,
-                bodies: Bodies::new(scene),
-                max_depth: self.max_depth,
-            },
-            sources: Sources::new(scene),
+            viewer: Viewer { carrier, sources },
             solution,
         }
     }

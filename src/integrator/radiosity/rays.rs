@@ -5,11 +5,11 @@
 //! nothing more than going on: these are the extended form factors of
 //! [`SillionPuech1989`](crate::references#sillionpuech1989).
 
-use super::carry::Carrier;
 use super::mesh::{Cell, Mesh};
 use super::system::{FormFactors, Row};
 use crate::color::Rgb;
 use crate::integrator::RayCounts;
+use crate::integrator::carrier::Carrier;
 use crate::material::Transport;
 use crate::math::frame::Frame;
 use crate::math::{Ray, rng, warp};

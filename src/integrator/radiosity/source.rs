@@ -1,10 +1,10 @@
 //! What patches get from light sources, and what they do with light.
 
-use super::carry::{Carrier, frame_of, lobes_of, survivor};
 use super::mesh::{Mesh, Node};
 use super::rays::{cell_point, cosine_ray};
 use super::system::{Patch, PatchSide};
 use crate::color::Rgb;
+use crate::integrator::carrier::{Carrier, frame_of, lobes_of, survivor};
 use crate::integrator::mis::power_heuristic;
 use crate::integrator::path::Strategies;
 use crate::integrator::sources::{Reach, Shading, Sources, receiver};

@@ -1,8 +1,9 @@
 //! Rays that go on through what is not matt: panes, holes, mirrors, glass, gloss.
 
+use super::RayCounts;
+use super::medium::{Bodies, Media, left_after};
+use super::path::highest_survival;
 use crate::color::Rgb;
-use crate::integrator::RayCounts;
-use crate::integrator::medium::{Bodies, Media, left_after};
 use crate::material::{
     Density, Optics, ScatterNumbers, Scattering, ScatteringFrame, Side, Transport,
 };
@@ -11,9 +12,8 @@ use crate::sampler::{Sampler, Use};
 use crate::scene::{Hit, Scene, SurfacePoint};
 use glam::DVec3;
 
-/// Scatterings after which dim rays end by chance, and the highest chance to go on.
+/// Scatterings after which dim rays end by chance.
 const ROULETTE_AFTER: u32 = 3;
-const HIGHEST_SURVIVAL: f64 = 0.99;
 
 /// What carrying rays needs to know.
 #[derive(Debug)]
@@ -29,6 +29,8 @@ pub(super) struct Way<'s> {
     pub(super) end: Option<Met<'s>>,
     /// What is left of the light on the way, what chance took made up for.
     pub(super) weight: Rgb,
+    /// How far away that is, metres; infinite where there is none.
+    pub(super) distance: f64,
 }
 
 /// A surface that a ray meets.
@@ -62,7 +64,7 @@ pub(super) fn survivor(
         return Some(throughput);
     }
     let worth = throughput.max_channel() / compression;
-    let survival = worth.min(HIGHEST_SURVIVAL);
+    let survival = worth.min(highest_survival(depth));
     (sampler.point(Use::Choice).y < survival).then(|| throughput / survival)
 }
 
@@ -105,6 +107,7 @@ impl<'s> Carrier<'s> {
                 return Way {
                     end: Some(Met { hit, point, optics }),
                     weight: weight * left_after(absorption, hit.t),
+                    distance: hit.t,
                 };
             }
             rays.closest += 1;
@@ -113,6 +116,7 @@ impl<'s> Carrier<'s> {
         Way {
             end: None,
             weight: weight * left_after(absorption, f64::INFINITY),
+            distance: f64::INFINITY,
         }
     }
 
