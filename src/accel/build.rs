@@ -135,7 +135,7 @@ pub fn build_unless(
             )
         };
         let tree = merge(cluster(&mut items, &weigh, stop));
-        store(tree, &mut bvh.nodes, &mut leaves);
+        store(tree, (&mut bvh.nodes, &mut leaves), stop);
     }
     (bvh, leaves)
 }
@@ -421,10 +421,19 @@ fn place(part: Subtree, places: usize, parts: &mut Vec<Subtree>) {
     }
 }
 
-/// Appends the nodes of a tree, its root first, and its leaves; returns the root.
-fn store(tree: Subtree, nodes: &mut Vec<Node>, leaves: &mut Leaves) -> Child {
+/// Appends the nodes of a tree, its root first, and its leaves; returns the root. Once `stop` says so, nothing more.
+fn store(
+    tree: Subtree,
+    (nodes, leaves): (&mut Vec<Node>, &mut Leaves),
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Child {
     let number = nodes.len();
     nodes.push(Node::EMPTY);
+    if stop() {
+        // To give back millions of small pieces of memory takes longer than whoever waits would like.
+        rayon::spawn(move || drop(tree));
+        return Child::node(number);
+    }
     let mut children = Vec::with_capacity(WIDTH);
     if tree.is_leaf() {
         children.push(tree);
@@ -438,7 +447,7 @@ fn store(tree: Subtree, nodes: &mut Vec<Node>, leaves: &mut Leaves) -> Child {
             leaves.ends.push(leaves.order.len() as u32);
             Child(leaves.ends.len() as u32 - 1)
         } else {
-            store(part, nodes, leaves)
+            store(part, (&mut *nodes, &mut *leaves), stop)
         };
         nodes[number].set(index, &bounds, child);
     }

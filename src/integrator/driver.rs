@@ -160,14 +160,15 @@ impl Pass<'_> {
     fn fill(&self, tile: &mut Tile, samples: &Range<u32>, wanted: Option<&PixelMask>) -> RayCounts {
         let mut rays = RayCounts::default();
         for (i, pixel) in (0..).zip(&mut tile.pixels) {
-            if self.context.cancel.is_cancelled() {
-                return rays;
-            }
             let (x, y) = (tile.x + i % tile.width, tile.y + i / tile.width);
             if wanted.is_some_and(|mask| !mask.has(x, y)) {
                 continue;
             }
             for sample in samples.clone() {
+                // A sample that gathers light over the hemisphere can take a millisecond.
+                if self.context.cancel.is_cancelled() {
+                    return rays;
+                }
                 let mut sampler = self.sampler(x, y, sample);
                 let ray = self.camera.ray(self.film_point(x, y, &sampler));
                 let radiance = self

@@ -27,7 +27,7 @@ use std::sync::Arc;
 const BYTES_PER_MODULE: u64 = 64;
 
 /// A grown model as geometry.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Drawn {
     /// Its shapes, materials and lights.
     pub scene: SceneDescription,
@@ -39,6 +39,23 @@ pub struct Drawn {
     pub sensors: Vec<Sensor>,
     /// The plant that each organ belongs to; none in drawings for pictures.
     pub plants: Vec<u32>,
+}
+
+impl Drawn {
+    /// A copy.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub(super) fn copied(&self, cancel: &CancelToken) -> Result<Self, Failure> {
+        let scene = self.scene.copied_unless(&|| cancel.is_cancelled());
+        Ok(Self {
+            scene: scene.ok_or(Failure::Stopped)?,
+            organs: self.organs.clone(),
+            summary: self.summary.clone(),
+            sensors: self.sensors.clone(),
+            plants: self.plants.clone(),
+        })
+    }
 }
 
 /// What `derive --json` writes.

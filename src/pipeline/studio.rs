@@ -292,12 +292,16 @@ impl<'w> Studio<'w> {
             .transpose()?;
         let outdoors = Outdoors::new(&run.options, drawn.summary.has_light, panorama)?;
         outdoors.complete(&mut drawn.scene, &drawn.summary, &run.options);
-        let digest = (self.keep == Keep::All).then(|| drawn.scene.shape_digest());
+        let stop = || cancel.is_cancelled();
+        let digest = (self.keep == Keep::All).then(|| drawn.scene.shape_digest_unless(&stop));
+        if stop() {
+            return Err(Failure::Stopped);
+        }
         let alike = self.alike(digest);
         self.work.accels += u64::from(alike.is_none());
         let built = self.seconds.time(self.world, Phase::Accel, || match alike {
             Some(alike) => alike.relit(drawn.scene),
-            None => Scene::build_unless(drawn.scene, &|| cancel.is_cancelled()),
+            None => Scene::build_unless(drawn.scene, &stop),
         });
         self.audience.ends();
         if cancel.is_cancelled() {
@@ -376,7 +380,7 @@ impl<'w> Studio<'w> {
         if let Some((known, drawn)) = &self.drawn
             && *known == key
         {
-            return Ok(drawn.clone());
+            return drawn.copied(cancel);
         }
         self.drawn = None;
         let mut growth = self.grow(run, cancel)?;
@@ -396,7 +400,9 @@ impl<'w> Studio<'w> {
             self.audience.warned(&run.sources.map, &found);
         }
         if self.keep == Keep::All {
-            self.drawn = Some((key, drawn.clone()));
+            // Kept first: who stops the copying loses nothing.
+            let (_, kept) = self.drawn.insert((key, drawn));
+            return kept.copied(cancel);
         }
         Ok(drawn)
     }

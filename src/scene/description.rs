@@ -1,9 +1,13 @@
 //! What growth hands to light: placed shapes, instances, materials, light sources, as plain data in `f64`.
 
+use super::Stop;
 use crate::geometry::Shape;
 use crate::light::{Environment, Light};
 use crate::material::Material;
 use glam::{DAffine3, DVec2};
+
+/// Shapes that are copied before it is asked again whether to go on.
+const STRETCH: usize = 4096;
 
 /// Index into [`SceneDescription::materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -77,6 +81,32 @@ pub struct SceneDescription {
 }
 
 impl SceneDescription {
+    /// A copy; `None` if `stop` said so while it was made, which can take a while.
+    #[must_use]
+    pub fn copied_unless(&self, stop: Stop<'_>) -> Option<Self> {
+        let mut groups = Vec::with_capacity(self.groups.len());
+        for group in &self.groups {
+            let mut copy = Group {
+                shapes: Vec::with_capacity(group.shapes.len()),
+                instances: group.instances.clone(),
+            };
+            for stretch in group.shapes.chunks(STRETCH) {
+                if stop() {
+                    return None;
+                }
+                copy.shapes.extend_from_slice(stretch);
+            }
+            groups.push(copy);
+        }
+        Some(Self {
+            materials: self.materials.clone(),
+            groups,
+            root: self.root,
+            lights: self.lights.clone(),
+            environment: self.environment.clone(),
+        })
+    }
+
     /// The same world, put beside itself so many times to each side along x and y, at distances of `size` metres: what hangs over
     /// the sides of a plot of that size is then there on the opposite side as well. Lights stay single.
     #[must_use]

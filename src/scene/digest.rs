@@ -1,5 +1,6 @@
 //! Telling scenes apart by their shapes alone: where only lights and colours differ, what rays walk through is the same.
 
+use super::Stop;
 use super::description::{Group, PlacedShape, SceneDescription};
 use crate::geometry::Shape;
 use crate::material::Material;
@@ -37,20 +38,27 @@ impl SceneDescription {
     /// let light through or not alike. Of others, two share it with a probability of 2⁻⁶⁴.
     #[must_use]
     pub fn shape_digest(&self) -> u64 {
+        self.shape_digest_unless(&|| false)
+    }
+
+    /// As [`shape_digest`](Self::shape_digest), but ends soon once `stop` says so, with a number that means nothing.
+    #[must_use]
+    pub fn shape_digest_unless(&self, stop: Stop<'_>) -> u64 {
         let mut digest = Digest(0);
         digest.add(self.root.map_or(u64::MAX, |root| u64::from(root.0)));
         let opaque = self.materials.iter().map(Material::is_opaque);
         opaque.for_each(|is_opaque| digest.add(u64::from(is_opaque)));
         for group in &self.groups {
-            digest.add(group_digest(group));
+            digest.add(group_digest(group, stop));
         }
         digest.0
     }
 }
 
-fn group_digest(group: &Group) -> u64 {
+fn group_digest(group: &Group, stop: Stop<'_>) -> u64 {
     let shapes = group.shapes.par_chunks(CHUNK).map(|shapes| {
         let mut digest = Digest(1);
+        let shapes = if stop() { &[] } else { shapes };
         shapes
             .iter()
             .for_each(|shape| add_shape(&mut digest, shape));
@@ -58,6 +66,7 @@ fn group_digest(group: &Group) -> u64 {
     });
     let instances = group.instances.par_chunks(CHUNK).map(|instances| {
         let mut digest = Digest(2);
+        let instances = if stop() { &[] } else { instances };
         for instance in instances {
             digest.add(u64::from(instance.group.0) << 32 | u64::from(instance.organ.0));
             digest.add_map(&instance.to_group);
@@ -132,9 +141,10 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::math::Ray;
-    use crate::scene::Scene;
     use crate::scene::description::{GroupId, MaterialId, OrganId};
+    use crate::scene::{Scene, SceneError};
     use glam::DVec3;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn world(radius: f64, organ: u32) -> SceneDescription {
         let ball = PlacedShape {
@@ -173,7 +183,36 @@ mod tests {
     #[test]
     fn who_wants_a_world_no_more_does_not_get_it() {
         let stopped = Scene::build_unless(world(1.0, 1), &|| true);
-        assert_eq!(stopped.unwrap_err(), crate::scene::SceneError::Stopped);
+        assert_eq!(stopped.unwrap_err(), SceneError::Stopped);
+    }
+
+    #[test]
+    fn whoever_says_stop_at_whatever_moment_is_heard() {
+        let mut crowd = world(1.0, 1);
+        let ball = crowd.groups[0].shapes[0].clone();
+        for x in 0..2_000 {
+            let to_group = DAffine3::from_translation(DVec3::new(f64::from(x), 0.0, 0.0));
+            let ball = ball.clone();
+            crowd.groups[0]
+                .shapes
+                .push(PlacedShape { to_group, ..ball });
+        }
+        let n_shapes = crowd.groups[0].shapes.len();
+        // Asks are counted; from the one with this number on the answer is yes.
+        let build = |last: usize| {
+            let asked = AtomicUsize::new(0);
+            let stop = || asked.fetch_add(1, Ordering::Relaxed) >= last;
+            let built = Scene::build_unless(crowd.clone(), &stop);
+            (built.map(drop), asked.into_inner())
+        };
+        let (whole, n_asks) = build(usize::MAX);
+        assert_eq!(whole, Ok(()));
+        // Checked, baked, stored, boxed, put in order: each shape is a moment at which it is asked.
+        assert!(n_asks > 5 * n_shapes, "{n_asks} asks");
+        for tenth in 0..10 {
+            let (stopped, _) = build(n_asks * tenth / 10);
+            assert_eq!(stopped, Err(SceneError::Stopped), "at {tenth} tenths");
+        }
     }
 
     #[test]

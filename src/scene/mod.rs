@@ -3,7 +3,9 @@
 //! ```text
 //! SceneDescription (f64 data) → Scene::build → Scene { closest, transmittance, surface, emitters, lights, bounds }
 //!   plan      which groups stay groups
-//!   bake      each group in a frame of its own, with a hierarchy over it
+//!   bake      each group in a frame of its own
+//!   arrange   … in the order of the hierarchy over it
+//!   planes    what is endless stays outside
 //!   query     what a ray meets
 //!   walk      how it gets there: through the hierarchies of groups within groups
 //!   surface   what shading needs to know there
@@ -45,6 +47,7 @@
 //! ```
 
 mod areas;
+mod arrange;
 mod bake;
 mod charts;
 pub mod description;
@@ -56,6 +59,7 @@ mod group;
 mod outline;
 mod placement;
 mod plan;
+mod planes;
 mod query;
 mod subtended;
 mod surface;
@@ -73,10 +77,10 @@ use crate::color::Rgb;
 use crate::light::{Environment, Light};
 use crate::material::{Material, Optics};
 use crate::math::{Bounds3, Ray};
-use bake::WorldPlane;
 use description::{MaterialId, SceneDescription};
 use glam::DAffine3;
 use group::Group;
+use planes::WorldPlane;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -137,9 +141,9 @@ impl Scene {
     /// As [`build`](Self::build), or [`SceneError::Stopped`].
     pub fn build_unless(description: SceneDescription, stop: Stop<'_>) -> Result<Self, SceneError> {
         check_light(&description)?;
-        let plan = plan::plan(&description)?;
+        let plan = plan::plan(&description, stop)?;
         let groups = bake_all(&plan, &description.materials, stop)?;
-        let planes = bake::world_planes(&plan.groups)?;
+        let planes = planes::world_planes(&plan.groups)?;
         drop(plan);
 
         let (to_root, bounds) = match groups.last() {

@@ -3,6 +3,7 @@
 //! Entering an instance costs a change of frame and a walk of its own, so groups that save nothing dissolve into the groups
 //! that use them: those used once, and those with so few primitives that an instance is not smaller than its contents.
 
+use super::Stop;
 use super::description::{
     Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
@@ -14,6 +15,8 @@ use glam::DAffine3;
 /// Groups of at most this many primitives, and without instances of their own, dissolve wherever they are used. Where groups
 /// are nested too deep otherwise, instances of their own count as one primitive each.
 const SMALL: usize = 16;
+/// Shapes that are collected before it is asked again whether to go on.
+const STRETCH: usize = 4096;
 /// How deep the groups that stay may be nested.
 pub(super) const MAX_DEPTH: usize = 16;
 
@@ -51,7 +54,10 @@ pub(super) struct PlannedInstance {
 }
 
 /// Plans the groups that the root reaches. Empty if there is no root.
-pub(super) fn plan(description: &SceneDescription) -> Result<Plan<'_>, SceneError> {
+pub(super) fn plan<'a>(
+    description: &'a SceneDescription,
+    stop: Stop<'_>,
+) -> Result<Plan<'a>, SceneError> {
     let Some(root) = description.root else {
         return Ok(Plan { groups: Vec::new() });
     };
@@ -62,7 +68,7 @@ pub(super) fn plan(description: &SceneDescription) -> Result<Plan<'_>, SceneErro
     // Shallow nesting is worth memory only where there is no other way.
     for dissolving in [Dissolving::Leaves, Dissolving::Small] {
         let dissolves = which_dissolve(&description.groups, root, &order, dissolving);
-        let groups = gather_all(&description.groups, &order, &dissolves)?;
+        let groups = gather_all(&description.groups, &order, (&dissolves, stop))?;
         if groups.iter().all(|group| group.height <= MAX_DEPTH) {
             return Ok(Plan { groups });
         }
@@ -83,12 +89,12 @@ enum Dissolving {
 fn gather_all<'a>(
     groups: &'a [Group],
     order: &[usize],
-    dissolves: &[bool],
+    (dissolves, stop): (&[bool], Stop<'_>),
 ) -> Result<Vec<PlannedGroup<'a>>, SceneError> {
     let mut places = vec![usize::MAX; groups.len()];
     let mut planned: Vec<PlannedGroup> = Vec::new();
     for &group in order.iter().filter(|group| !dissolves[**group]) {
-        let gathered = gather(groups, group, dissolves, &places, &planned)?;
+        let gathered = gather(groups, group, (dissolves, &places, &planned), stop)?;
         places[group] = planned.len();
         planned.push(gathered);
     }
@@ -193,9 +199,8 @@ pub(super) fn primitive_count(shape: &Shape) -> usize {
 fn gather<'a>(
     groups: &'a [Group],
     group: usize,
-    dissolves: &[bool],
-    places: &[usize],
-    planned: &[PlannedGroup],
+    (dissolves, places, planned): (&[bool], &[usize], &[PlannedGroup]),
+    stop: Stop<'_>,
 ) -> Result<PlannedGroup<'a>, SceneError> {
     let mut gathered = PlannedGroup {
         shapes: Vec::new(),
@@ -204,21 +209,23 @@ fn gather<'a>(
     };
     let mut open = vec![(group, DAffine3::IDENTITY, None)];
     while let Some((group, to_group, outer)) = open.pop() {
-        gathered
-            .shapes
-            .extend(
-                groups[group]
-                    .shapes
-                    .iter()
-                    .map(|placed: &PlacedShape| PlannedShape {
-                        shape: &placed.shape,
-                        to_group: to_group * placed.to_group,
-                        material: placed.material,
-                        organ: placed.organ,
-                        instance_organ: outer,
-                    }),
-            );
+        for stretch in groups[group].shapes.chunks(STRETCH) {
+            if stop() {
+                return Err(SceneError::Stopped);
+            }
+            let shapes = stretch.iter().map(|placed: &PlacedShape| PlannedShape {
+                shape: &placed.shape,
+                to_group: to_group * placed.to_group,
+                material: placed.material,
+                organ: placed.organ,
+                instance_organ: outer,
+            });
+            gathered.shapes.extend(shapes);
+        }
         for instance in &groups[group].instances {
+            if stop() {
+                return Err(SceneError::Stopped);
+            }
             check_placement(&instance.to_group, instance.organ)?;
             let child = instance.group.0 as usize;
             let organ = outer.filter(OrganId::is_own).unwrap_or(instance.organ);

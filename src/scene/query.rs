@@ -1,7 +1,7 @@
 //! What a ray meets: the questions, and what is kept of what the [walk](super::walk) finds.
 
 use super::Scene;
-use super::bake::WorldPlane;
+use super::planes::WorldPlane;
 use super::walk::{Walk, transformed};
 use crate::accel::dispatch;
 use crate::color::Rgb;

@@ -56,18 +56,20 @@ impl Live<'_> {
         let mut on_pass = |result: &FilmResult| {
             let now = self.world.now();
             let report = &result.report;
-            if now.saturating_sub(shown) < BETWEEN || self.is_once {
+            let is_early = now.saturating_sub(shown) < BETWEEN;
+            if is_early || self.is_once || sight.task.cancel.is_cancelled() {
                 return;
             }
             shown = now;
-            let frame = frame(&result.film.image(), false, report.samples_per_pixel);
+            let image = result.film.image();
+            let frame = frame(&image, false, report.samples_per_pixel);
             let error = report.error.map(|error| error.relative);
-            self.publish(&result.film.image(), exposure, Frame { error, ..frame });
+            self.publish(&image, exposure, Frame { error, ..frame });
         };
         let shot = viewing.refine(sight.prepared, &sight.camera, &mut on_pass)?;
         let time = self.world.now().saturating_sub(start);
         seconds.add(Phase::Render, time);
-        if !shot.is_whole {
+        if !shot.is_whole || sight.task.cancel.is_cancelled() {
             return Err(Failure::Stopped);
         }
         let n_pixels = f64::from(shot.image.width) * f64::from(shot.image.height);
