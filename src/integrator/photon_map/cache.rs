@@ -25,6 +25,9 @@ const TRUST: f64 = 0.35;
 /// How far a record is trusted towards the nearest that its rays met: less than 1, because they do not meet the very nearest.
 const BEFORE_WALLS: f64 = 0.8;
 
+/// How far a record must be trusted to be worth its rays, in widths of its level: amid leaves none is.
+const WORTHWHILE: f64 = 0.25;
+
 /// How far a record is used, in widths of its level: every point of a cell is that near to the record in it.
 const USE: f64 = 1.75;
 
@@ -65,9 +68,20 @@ struct Record {
     distance: f32,
 }
 
+/// Makes what the cache keeps: always the same for the same place, given with its number.
+pub(super) trait Gather {
+    /// A first look at how far away the nearest surface is, metres; 0 where nothing can be gathered.
+    fn nearest(&mut self, at: usize, place: &Place) -> f64;
+
+    /// What the record of a place holds.
+    fn gather(&mut self, at: usize, place: &Place) -> Option<Gathered>;
+}
+
 /// What is known of a place.
 #[derive(Debug, Default)]
 struct Slot {
+    /// The nearest surface at first look, metres.
+    nearest: OnceLock<f32>,
     /// Empty inside where the surface was not found again.
     record: OnceLock<Option<Box<Record>>>,
     /// Its radius, not larger than those of its neighbours let it be.
@@ -170,13 +184,8 @@ impl IrradianceCache {
         self.spacing
     }
 
-    /// Irradiance, W/m² per channel, and how certain it is: 1 needs nothing else, 0 is nothing. `gather` makes the record
-    /// of a place, given its number, and must always make the same.
-    pub(super) fn irradiance(
-        &self,
-        asked: &Asked,
-        mut gather: impl FnMut(usize, &Place) -> Option<Gathered>,
-    ) -> (Rgb, f64) {
+    /// Irradiance, W/m² per channel, and how certain it is: 1 needs nothing else, 0 is nothing.
+    pub(super) fn irradiance(&self, asked: &Asked, mut gather: impl Gather) -> (Rgb, f64) {
         let position = asked.position - self.center;
         let (mut sum, mut left) = (DVec3::ZERO, 1.0);
         for level in &self.levels {
@@ -211,7 +220,7 @@ impl IrradianceCache {
         level: &Level,
         position: DVec3,
         normal: DVec3,
-        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
+        gather: &mut impl Gather,
     ) -> (DVec3, f64) {
         let reach = USE * level.width;
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
@@ -227,6 +236,10 @@ impl IrradianceCache {
             let distance = from.length();
             let off = SLOPE * distance + 0.01 * self.spacing;
             if turn < Self::SAME_NORMAL || from.dot(own).abs() > off {
+                return;
+            }
+            let trusted = self.trusted(at, gather);
+            if distance >= trusted || trusted < WORTHWHILE * level.width {
                 return;
             }
             let Some(record) = self.record(at, gather) else {
@@ -245,22 +258,23 @@ impl IrradianceCache {
     }
 
     /// The record of a place.
-    fn record(
-        &self,
-        at: usize,
-        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
-    ) -> Option<&Record> {
-        let made = || gather(at, &self.places[at]).map(|found| Box::new(Record::new(&found)));
+    fn record(&self, at: usize, gather: &mut impl Gather) -> Option<&Record> {
+        let made = || {
+            let trusted = self.trusted(at, gather);
+            let found = gather.gather(at, &self.places[at])?;
+            Some(Box::new(Record::new(&found, trusted)))
+        };
         self.slots[at].record.get_or_init(made).as_deref()
     }
 
+    /// How far a record is trusted at most, metres, as a first look tells.
+    fn trusted(&self, at: usize, gather: &mut impl Gather) -> f64 {
+        let look = || gather.nearest(at, &self.places[at]) as f32;
+        BEFORE_WALLS * f64::from(*self.slots[at].nearest.get_or_init(look))
+    }
+
     /// Radius of a record: its own, or less where a neighbour of its level knows of something nearer.
-    fn radius(
-        &self,
-        at: usize,
-        record: &Record,
-        gather: &mut impl FnMut(usize, &Place) -> Option<Gathered>,
-    ) -> f64 {
+    fn radius(&self, at: usize, record: &Record, gather: &mut impl Gather) -> f64 {
         if let Some(known) = self.slots[at].radius.get() {
             return f64::from(*known);
         }
@@ -274,26 +288,32 @@ impl IrradianceCache {
             let distance = (pin.position.as_dvec3() - position).length();
             let is_alike =
                 f64::from(self.places[other].normal.dot(place.normal)) > Self::SAME_NORMAL;
-            if other != at
-                && is_alike
-                && distance < reach
-                && let Some(neighbour) = self.record(other, gather)
-            {
-                radius = radius.min(f64::from(neighbour.distance) + distance);
+            if other == at || !is_alike || distance >= reach {
+                return;
             }
+            let trusted = self.trusted(other, gather);
+            let known = if trusted < WORTHWHILE * level.width {
+                trusted / TRUST
+            } else if let Some(neighbour) = self.record(other, gather) {
+                f64::from(neighbour.distance)
+            } else {
+                return;
+            };
+            radius = radius.min(known + distance);
         });
         f64::from(*self.slots[at].radius.get_or_init(|| radius as f32))
     }
 }
 
 impl Record {
-    fn new(found: &Gathered) -> Self {
+    fn new(found: &Gathered, trusted: f64) -> Self {
         let irradiance = DVec3::from_array(found.irradiance.to_array());
         // A record is not trusted beyond the nearest wall, nor farther than its gradient takes it to nothing or to the double.
         let slopes = found.per_metre.map(DVec3::length);
         let slope = slopes[0] + slopes[1] + slopes[2];
         let allowed = irradiance.element_sum() / slope;
-        let open = found.distance.min(found.nearest * (BEFORE_WALLS / TRUST));
+        let nearest = (found.nearest * BEFORE_WALLS).min(trusted);
+        let open = found.distance.min(nearest / TRUST);
         let distance = if slope > 0.0 { open.min(allowed) } else { open };
         Self {
             irradiance: irradiance.as_vec3(),

@@ -12,14 +12,14 @@
 //! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up. From leaves it is one, which also finds its part of
 //! the direct light.
 
-use super::cache::{Asked, IrradianceCache, Place};
+use super::cache::{Asked, Gather, IrradianceCache, Place};
 use super::hemisphere::{Gathered, Hemisphere};
 use super::irradiance::IrradianceMap;
 use super::stored::facing;
 use super::view::{Asker, View};
 use crate::color::Rgb;
 use crate::integrator::RayCounts;
-use crate::integrator::carrier::{Carrier, frame_of};
+use crate::integrator::carrier::frame_of;
 use crate::integrator::medium::Media;
 use crate::integrator::viewer::LastScattering;
 use crate::math::frame::Frame;
@@ -34,7 +34,10 @@ const FIRST_VERTEX: u32 = 1 << 22;
 const VERTICES: u32 = 1 << 8;
 
 /// Rays of the cache for each ray of a sample of the picture: samples of a pixel add up.
-const RAYS_PER_OWN: u32 = 128;
+const RAYS_PER_OWN: u32 = 256;
+
+/// Rays of a first look round a place.
+const LOOKS: u32 = 12;
 
 /// How far above a place its surface is looked for, in spacings of the places, which are stored with 24 bits.
 const LIFT: f64 = 0.02;
@@ -93,15 +96,15 @@ pub(super) struct OneSide<'a> {
 }
 
 impl View<'_> {
-    /// Indirect irradiance of a side for an eye that is so far away, W/m² per channel.
-    pub(super) fn accurate_irradiance(
+    /// Indirect irradiance of a side for an eye that is so far away, W/m² per channel, as the cache has it, and how certain
+    /// that is: 1 wholly, 0 not at all.
+    pub(super) fn cached_irradiance(
         &self,
         gather: &FinalGather,
         spot: &OneSide<'_>,
         eye: f64,
-        sampler: &Sampler,
         rays: &mut RayCounts,
-    ) -> Rgb {
+    ) -> (Rgb, f64) {
         // A level that is wider than a leaf knows nothing of it.
         let flat = match *spot.piece {
             Piece::Flat { size, .. } => size,
@@ -114,8 +117,20 @@ impl View<'_> {
             flat,
             eye,
         };
-        let record = |at: usize, place: &Place| self.record(gather, at, place, rays);
-        let (cached, certain) = gather.cache.irradiance(&asked, record);
+        let view = self;
+        let gathering = Gathering { view, gather, rays };
+        gather.cache.irradiance(&asked, gathering)
+    }
+
+    /// The same, with what is not certain by rays.
+    pub(super) fn accurate_irradiance(
+        &self,
+        gather: &FinalGather,
+        spot: &OneSide<'_>,
+        (cached, certain): (Rgb, f64),
+        sampler: &Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
         if certain >= 1.0 {
             return cached;
         }
@@ -168,38 +183,60 @@ impl View<'_> {
         let arriving = self.light_along(&ray, media, asker, &mut sampler, rays);
         arriving.radiance * PI
     }
+}
 
-    /// Gathers at place number `at` of the cache; `None` if its surface is not found again.
-    ///
-    /// Depends on nothing but the scene, the maps and the number, so it does not matter who asks first.
-    fn record(
-        &self,
-        gather: &FinalGather,
-        at: usize,
-        place: &Place,
-        rays: &mut RayCounts,
-    ) -> Option<Gathered> {
-        let Carrier { scene, bodies, .. } = &self.viewer.carrier;
+/// Gathers for the cache. What it finds depends on nothing but the scene, the maps and the number of a place, so it does not matter
+/// who asks first.
+struct Gathering<'a, 's> {
+    view: &'a View<'s>,
+    gather: &'a FinalGather,
+    rays: &'a mut RayCounts,
+}
+
+impl Gathering<'_, '_> {
+    /// The surface at a place, if it is found again, and a point above it.
+    fn surface(&mut self, place: &Place) -> Option<(SurfacePoint, DVec3)> {
+        let scene = self.view.viewer.carrier.scene;
         let normal = place.normal.as_dvec3();
-        let lift = LIFT * gather.cache.spacing();
-        let above = gather.cache.position(place) + normal * lift;
+        let lift = LIFT * self.gather.cache.spacing();
+        let above = self.gather.cache.position(place) + normal * lift;
         let down = Ray::new(above, -normal).until(2.0 * lift);
-        rays.closest += 1;
+        self.rays.closest += 1;
         let point = scene.surface(&down, &scene.closest(&down)?);
-        if point.normal_g.dot(normal).abs() < IrradianceCache::SAME_NORMAL {
-            return None;
-        }
-        let media = bodies.around(above);
-        let stream = rng::hash(&[gather.settings.seed, at as u64]);
-        let side = facing(point.normal_g, normal);
-        let hemisphere = Hemisphere::new(side, gather.settings.rays);
+        let is_same = point.normal_g.dot(normal).abs() >= IrradianceCache::SAME_NORMAL;
+        is_same.then_some((point, above))
+    }
+}
+
+impl Gather for Gathering<'_, '_> {
+    fn nearest(&mut self, _at: usize, place: &Place) -> f64 {
+        let Some((point, _)) = self.surface(place) else {
+            return 0.0;
+        };
+        let side = facing(point.normal_g, place.normal.as_dvec3());
+        let scene = self.view.viewer.carrier.scene;
+        let looks = Hemisphere::new(side, LOOKS).middles();
+        self.rays.closest += u64::from(LOOKS);
+        looks
+            .filter_map(|wi| Some(scene.closest(&point.spawn_ray(wi))?.t))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    fn gather(&mut self, at: usize, place: &Place) -> Option<Gathered> {
+        let (point, above) = self.surface(place)?;
+        let media = self.view.viewer.carrier.bodies.around(above);
+        let stream = rng::hash(&[self.gather.settings.seed, at as u64]);
+        let side = facing(point.normal_g, place.normal.as_dvec3());
+        let hemisphere = Hemisphere::new(side, self.gather.settings.rays);
         Some(hemisphere.gather(stream, |wi, sampler| {
             let asker = Asker::Gather {
                 vertex: 0,
                 may_go_on: true,
                 last: None,
             };
-            self.light_along(&point.spawn_ray(wi), media, asker, sampler, rays)
+            let ray = point.spawn_ray(wi);
+            self.view
+                .light_along(&ray, media, asker, sampler, self.rays)
         }))
     }
 }

@@ -57,6 +57,27 @@ impl Hemisphere {
         }
     }
 
+    /// Directions through the middles of the cells.
+    pub(super) fn middles(self) -> impl Iterator<Item = DVec3> {
+        (0..self.n_polar * self.n_turns)
+            .map(move |index| self.to_world(self.flat(index, DVec2::splat(0.5))))
+    }
+
+    /// Where over the unit disk a place in [0, 1)² of a cell lies.
+    fn flat(&self, index: u32, u: DVec2) -> DVec2 {
+        let (turn, polar) = (index / self.n_polar, index % self.n_polar);
+        let sine = ((f64::from(polar) + u.x) / f64::from(self.n_polar)).sqrt();
+        let angle = TAU * (f64::from(turn) + u.y) / f64::from(self.n_turns);
+        let (sin, cos) = sin_cos(angle);
+        DVec2::new(cos, sin) * sine
+    }
+
+    /// The direction over a point of the unit disk.
+    fn to_world(&self, flat: DVec2) -> DVec3 {
+        let height = (1.0 - flat.length_squared()).max(0.0).sqrt();
+        self.frame.to_world(flat.extend(height))
+    }
+
     /// Asks for the light from one direction in each cell. Random numbers are those of `stream`; the one of vertex 0 for
     /// directions is used.
     pub(super) fn gather(
@@ -68,14 +89,8 @@ impl Hemisphere {
         let cells: Vec<Cell> = (0..n_cells)
             .map(|index| {
                 let mut sampler = Sampler::new(SamplerKind::OwenSobol, stream, index);
-                let u = sampler.point(Use::Direction);
-                let (turn, polar) = (index / self.n_polar, index % self.n_polar);
-                let sine = ((f64::from(polar) + u.x) / f64::from(self.n_polar)).sqrt();
-                let angle = TAU * (f64::from(turn) + u.y) / f64::from(self.n_turns);
-                let (sin, cos) = sin_cos(angle);
-                let flat = DVec2::new(cos, sin) * sine;
-                let height = (1.0 - flat.length_squared()).max(0.0).sqrt();
-                let wi = self.frame.to_world(flat.extend(height));
+                let flat = self.flat(index, sampler.point(Use::Direction));
+                let wi = self.to_world(flat);
                 Cell {
                     arriving: light(wi, &mut sampler),
                     flat,

@@ -14,7 +14,6 @@ use crate::integrator::{RadianceEstimator, RayCounts};
 use crate::material::{Scattering, Transport};
 use crate::math::Ray;
 use crate::sampler::Sampler;
-use crate::scene::Piece;
 use glam::DVec3;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::Arc;
@@ -60,8 +59,8 @@ enum Indirect {
     /// From a ray, whose vertices begin here. It also finds part of the light that comes straight from sources: of a wide sky
     /// between leaves it finds more than the one direction that is asked for.
     OneRay(u32),
-    /// From many rays.
-    Gathered,
+    /// From many rays: what the cache has for the front and for the back, and how certain that is.
+    Gathered([(Rgb, f64); 2]),
 }
 
 impl RadianceEstimator for View<'_> {
@@ -97,31 +96,55 @@ impl View<'_> {
             .light_along((ray, media), asked, sampler, rays, matt)
     }
 
-    /// Where a surface takes its indirect light from.
+    /// Where a surface with sides that scatter so takes its indirect light from.
     ///
     /// Where a ray of a gather meets a surface the map does unless that is too near to where the ray comes from, as in corners: it
     /// blurs light that lies between the two over both. Nor on small pieces like leaves: what it knows of each is right in
     /// the mean, but a leaf of a forest has met a photon or none.
-    fn indirect(&self, seen: &Seen<'_>, piece: &Piece, asker: Asker) -> Indirect {
-        let is_small = self.maps.global.as_ref();
-        let is_small = is_small.is_some_and(|map| map.knows_wholly(piece));
-        match asker {
-            Asker::Camera if seen.is_by_gloss || self.gather.is_none() => Indirect::Stored,
-            Asker::Camera if is_small => Indirect::OneRay(OWN),
-            Asker::Camera => Indirect::Gathered,
-            Asker::Gather {
-                vertex,
-                may_go_on: true,
-                ..
-            } if seen.depth == 0 => {
-                let radius = self.maps.global.as_ref().map_or(0.0, IrradianceMap::radius);
+    fn indirect(
+        &self,
+        seen: &Seen<'_>,
+        sides: &[(Rgb, OneSide<'_>); 2],
+        asker: Asker,
+        rays: &mut RayCounts,
+    ) -> Indirect {
+        let map = self.maps.global.as_ref();
+        let is_small = map.is_some_and(|map| map.knows_wholly(sides[0].1.piece));
+        match (asker, &self.gather) {
+            (Asker::Camera, Some(gather)) if !seen.is_by_gloss => {
+                if is_small {
+                    return Indirect::OneRay(OWN);
+                }
+                let cached = |(share, side): &(Rgb, OneSide<'_>)| {
+                    if share.is_black() {
+                        (Rgb::BLACK, 0.0)
+                    } else {
+                        self.cached_irradiance(gather, side, seen.gone, rays)
+                    }
+                };
+                let cached = sides.each_ref().map(cached);
+                if cached.iter().all(|(_, certain)| *certain <= 0.0) {
+                    Indirect::OneRay(OWN)
+                } else {
+                    Indirect::Gathered(cached)
+                }
+            }
+            (
+                Asker::Gather {
+                    vertex,
+                    may_go_on: true,
+                    ..
+                },
+                _,
+            ) if seen.depth == 0 => {
+                let radius = map.map_or(0.0, IrradianceMap::radius);
                 if is_small || seen.gone < NEAR * radius {
                     Indirect::OneRay(vertex.wrapping_add(SECOND))
                 } else {
                     Indirect::Stored
                 }
             }
-            Asker::Gather { .. } => Indirect::Stored,
+            (Asker::Camera | Asker::Gather { .. }, _) => Indirect::Stored,
         }
     }
 
@@ -142,64 +165,66 @@ impl View<'_> {
             return Rgb::BLACK;
         }
         let scene = self.viewer.carrier.scene;
-        let piece = scene.piece(point.primitive);
-        let indirect = self.indirect(seen, &piece, asker);
+        let piece = &scene.piece(point.primitive);
+        let near = usize::from(point.normal_g.dot(wo) < 0.0);
+        let front = facing(point.normal_g, wo);
+        let side = |normal| OneSide {
+            point,
+            piece,
+            normal,
+            wo,
+            media: seen.media,
+        };
+        let sides = [
+            (matt.sides[near].reflectance, side(front)),
+            (matt.sides[1 - near].transmittance, side(-front)),
+        ];
+        let indirect = self.indirect(seen, &sides, asker, rays);
         let reach = match asker {
             Asker::Camera => Reach::First,
             Asker::Gather { .. } => Reach::Later,
         };
         let strategies = match indirect {
             Indirect::OneRay(_) => Strategies::Both,
-            Indirect::Stored | Indirect::Gathered => Strategies::LightsOnly,
+            Indirect::Stored | Indirect::Gathered(_) => Strategies::LightsOnly,
         };
         let ways = (reach, strategies);
         let direct = self.viewer.direct(seen, &matt, ways, sampler, rays);
-        let near = usize::from(point.normal_g.dot(wo) < 0.0);
-        let side = facing(point.normal_g, wo);
         let mut scattered = Rgb::BLACK;
-        for (share, normal) in [
-            (matt.sides[near].reflectance, side),
-            (matt.sides[1 - near].transmittance, -side),
-        ] {
+        for (nth, (share, side)) in sides.iter().enumerate() {
             if share.is_black() {
                 continue;
             }
-            let spot = OneSide {
-                point,
-                piece: &piece,
-                normal,
-                wo,
-                media: seen.media,
-            };
             let stored = |map: &Option<IrradianceMap>| match (map, asker) {
-                (Some(map), Asker::Camera) => map.irradiance(scene, point, &piece, normal),
+                (Some(map), Asker::Camera) => map.irradiance(scene, point, piece, side.normal),
                 (Some(map), Asker::Gather { .. }) => {
-                    map.coarse_irradiance(scene, point, &piece, normal)
+                    map.coarse_irradiance(scene, point, piece, side.normal)
                 }
                 (None, _) => Rgb::BLACK,
             };
-            let indirect = match (indirect, &self.gather) {
-                (Indirect::Gathered, Some(gather)) => {
-                    self.accurate_irradiance(gather, &spot, seen.gone, sampler, rays)
+            let found = match (indirect, &self.gather) {
+                (Indirect::Gathered(cached), Some(gather)) => {
+                    self.accurate_irradiance(gather, side, cached[nth], sampler, rays)
                 }
                 (Indirect::OneRay(vertex), _) => {
-                    let frame = frame_of(point);
-                    let from = receiver(point, &frame, &matt, wo);
-                    let last = |wi: DVec3| {
-                        let transport = Transport::Radiance;
-                        Some(LastScattering {
-                            from,
-                            pdf_solid_angle: matt.pdf_solid_angle(&frame, wo, wi, transport),
-                            reach,
-                        })
-                    };
                     let goes_on = matches!(asker, Asker::Camera);
-                    self.irradiance_by_ray(&spot, (vertex, goes_on), last, sampler, rays)
+                    let last = |wi| Some(scattering(seen, &matt, wi, reach));
+                    self.irradiance_by_ray(side, (vertex, goes_on), last, sampler, rays)
                 }
-                (Indirect::Gathered | Indirect::Stored, _) => stored(&self.maps.global),
+                (Indirect::Gathered(_) | Indirect::Stored, _) => stored(&self.maps.global),
             };
-            scattered += share * (indirect + stored(&self.maps.caustic));
+            scattered += *share * (found + stored(&self.maps.caustic));
         }
         direct + scattered * FRAC_1_PI
+    }
+}
+
+/// A surface as that which a ray towards `wi` comes from, where part of the light of sources is left to that ray.
+fn scattering(seen: &Seen<'_>, matt: &Scattering<'_>, wi: DVec3, reach: Reach) -> LastScattering {
+    let frame = frame_of(&seen.met.point);
+    LastScattering {
+        from: receiver(&seen.met.point, &frame, matt, seen.wo),
+        pdf_solid_angle: matt.pdf_solid_angle(&frame, seen.wo, wi, Transport::Radiance),
+        reach,
     }
 }
