@@ -38,6 +38,9 @@ const ENOUGH: f64 = 0.4;
 /// [`IrradianceCache::SAME_NORMAL`].
 const SLOPE: f64 = 0.2;
 
+/// The same off the plane of a point whose normal differs so from that of the record: [`SLOPE`] and the sine of the angle.
+const MOST_SLOPE: f64 = SLOPE + 0.436;
+
 /// The widest level, as a share of the scene's size.
 const WIDEST: f64 = 1.0 / 12.0;
 
@@ -92,6 +95,7 @@ struct Slot {
 #[derive(Clone, Copy, Debug)]
 struct Pin {
     position: Vec3,
+    normal: Vec3,
     at: u32,
 }
 
@@ -155,6 +159,7 @@ impl IrradianceCache {
             }
             let pin = |at: &u32| Pin {
                 position: places[*at as usize].position,
+                normal: places[*at as usize].normal,
                 at: *at,
             };
             let pins = members.iter().map(pin).collect();
@@ -224,14 +229,15 @@ impl IrradianceCache {
     ) -> (DVec3, f64) {
         let reach = USE * level.width;
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        level.pins.near(position, |pin| {
+        let thickness = MOST_SLOPE * reach + 0.01 * self.spacing;
+        level.pins.near_plane(position, normal, thickness, |pin| {
             let from = position - pin.position.as_dvec3();
             let share = from.length_squared() / (reach * reach);
             if share >= 1.0 {
                 return;
             }
             let at = pin.at as usize;
-            let own = self.places[at].normal.as_dvec3();
+            let own = pin.normal.as_dvec3();
             let turn = own.dot(normal);
             let distance = from.length();
             let off = SLOPE * distance + 0.01 * self.spacing;
@@ -286,8 +292,7 @@ impl IrradianceCache {
         level.pins.near(position, |pin| {
             let other = pin.at as usize;
             let distance = (pin.position.as_dvec3() - position).length();
-            let is_alike =
-                f64::from(self.places[other].normal.dot(place.normal)) > Self::SAME_NORMAL;
+            let is_alike = f64::from(pin.normal.dot(place.normal)) > Self::SAME_NORMAL;
             if other == at || !is_alike || distance >= reach {
                 return;
             }

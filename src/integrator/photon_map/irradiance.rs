@@ -159,19 +159,25 @@ impl Layer {
         (sum, weights)
     }
 
-    /// The nearest sample in the cell of the grid round a point.
+    /// The nearest sample, if one is near enough to be used; that in the cell of the grid round the point where there is one.
     fn one(&self, position: DVec3, normal: DVec3) -> Option<Sample> {
         if !self.outline.is_near(position) {
             return None;
         }
-        let mut best: Option<(f64, Sample)> = None;
-        self.samples.around(position, |sample| {
+        let nearer = |best: &mut Option<(f64, Sample)>, sample: &Sample| {
             if let Some(share) = self.share(sample, position, normal)
                 && best.is_none_or(|(least, _)| share < least)
             {
-                best = Some((share, *sample));
+                *best = Some((share, *sample));
             }
-        });
+        };
+        let mut best = None;
+        let samples = &self.samples;
+        samples.around(position, |sample| nearer(&mut best, sample));
+        if best.is_none() {
+            let look = |sample: &Sample| nearer(&mut best, sample);
+            samples.near_plane(position, normal, THICKNESS * self.spacing, look);
+        }
         best.map(|(_, sample)| sample)
     }
 
@@ -213,7 +219,7 @@ impl IrradianceMap {
                 return Rgb::from_array(sample.irradiance.as_dvec3().to_array());
             }
         }
-        // None in these cells, or something stands before them: perhaps there are others.
+        // None is near, or something stands before it: perhaps there are others.
         self.irradiance(scene, point, piece, w)
     }
 
