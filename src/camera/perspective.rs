@@ -97,6 +97,11 @@ impl Camera {
     pub fn eye(&self) -> DVec3 {
         self.eye
     }
+
+    /// Unit vectors to the right edge of the picture and to its upper edge.
+    pub fn axes(&self) -> [DVec3; 2] {
+        [self.half_right, self.half_up].map(DVec3::normalize)
+    }
 }
 
 #[cfg(test)]

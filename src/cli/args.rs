@@ -37,6 +37,8 @@ pub enum Action {
     Watch(WatchArgs),
     /// Make a film: the camera moves, the model grows, or both
     Fly(FlyArgs),
+    /// Write the surfaces with the light on them as a mesh with vertex colours (glTF)
+    Export(ExportArgs),
     /// Check the light transport against what is known on paper; print each number
     Validate(ValidateArgs),
     /// Count the light that each organ absorbs, reflects and lets through
@@ -248,6 +250,36 @@ pub struct FlyArgs {
     pub manners: Manners,
 }
 
+/// `export`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory export room.rgg --renderer radiosity -o room.glb\n  \
+                        understory export room.rgg --renderer radiosity --solution room.light -o room.glb\n\n\
+                        The light of radiosity becomes colours at the corners of triangles, shown as they are by any viewer of\n\
+                        glTF (its material is unlit), with the exposure and the tone curve of the picture that the camera\n\
+                        sees. Shadows are as sharp as a thousandth of the scene; mirrors and glass show what is seen in them\n\
+                        from straight above."
+)]
+pub struct ExportArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The mesh
+    #[arg(
+        short,
+        long,
+        value_name = "FILE.glb",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub light: SolutionArgs,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
 /// `validate`
 #[derive(Debug, Args)]
 #[command(
@@ -333,12 +365,13 @@ const STYLES: Styles = Styles::styled()
     .placeholder(AnsiColor::Cyan.on_default());
 
 /// The commands with their names.
-const COMMANDS: [(&str, Command); 8] = [
+const COMMANDS: [(&str, Command); 9] = [
     ("check", Command::Check),
     ("derive", Command::Derive),
     ("render", Command::Render),
     ("watch", Command::Watch),
     ("fly", Command::Fly),
+    ("export", Command::Export),
     ("validate", Command::Validate),
     ("light", Command::Light),
     ("lsp", Command::Lsp),
@@ -387,6 +420,7 @@ impl Action {
             Self::Render(_) => Command::Render,
             Self::Watch(_) => Command::Watch,
             Self::Fly(_) => Command::Fly,
+            Self::Export(_) => Command::Export,
             Self::Validate(_) => Command::Validate,
             Self::Light(_) => Command::Light,
             Self::Lsp(_) => Command::Lsp,

@@ -1,18 +1,19 @@
 //! The commands that run once.
 
-use super::args::{CheckArgs, DeriveArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs};
+use super::args::{CheckArgs, DeriveArgs, ExportArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
 use crate::options::Command;
 use crate::pipeline::budget;
+use crate::pipeline::exporting;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::growing;
 use crate::pipeline::lighting;
 use crate::pipeline::making::{Made, Partial};
 use crate::pipeline::report::{LIGHT_REPORT_KEYS, LightReport, Phase};
 use crate::pipeline::solving::SolutionFiles;
-use crate::pipeline::store::{CsvTarget, JsonTarget, PictureTarget, SolutionTarget};
+use crate::pipeline::store::{CsvTarget, GlbTarget, JsonTarget, PictureTarget, SolutionTarget};
 use crate::pipeline::studio::{Keep, Run, Studio};
 use crate::pipeline::viewpoint;
 use crate::pipeline::world::World;
@@ -107,6 +108,34 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
             .terminal
             .note(&summary(target.path(), run, studio, &made));
         finished(&made)
+    })
+}
+
+/// `export`: the lit surfaces.
+pub(super) fn export(shell: &Shell, args: &ExportArgs) -> Result<(), Failure> {
+    let path = &args.model.model;
+    let output = match &args.output {
+        Some(output) if !args.manners.explain_options => output,
+        _ => return shell.explain(path, Command::Export),
+    };
+    let target = GlbTarget::new(&shell.world, output)?;
+    let mut studio = studio(shell, &args.model)?;
+    studio.solution_files = solution_files(shell, &args.light, output)?;
+    run(shell, &mut studio, |studio, run| {
+        exporting::check(&run.options)?;
+        studio.solution_files.check(&run.options)?;
+        viewpoint::check(&run.sources, &run.options)?;
+        let exported = shell
+            .making(Partial::Drop)
+            .surfaces(studio, run, &target)?;
+        shell.terminal.note(&format!(
+            "{}: {} triangles, {} corners ({})",
+            output.display(),
+            exported.n_triangles,
+            exported.n_corners,
+            studio.seconds.summary()
+        ));
+        Ok(())
     })
 }
 

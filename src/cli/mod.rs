@@ -47,6 +47,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Render(args) => Some(&args.manners),
         Action::Watch(args) => Some(&args.manners),
         Action::Fly(args) => Some(&args.manners),
+        Action::Export(args) => Some(&args.manners),
         Action::Light(args) => Some(&args.manners),
     };
     let shell = Shell::new(&request, manners, cancel);
@@ -56,6 +57,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Render(args) => commands::render(&shell, args),
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
         Action::Fly(args) => flying::fly(&shell, args),
+        Action::Export(args) => commands::export(&shell, args),
         Action::Validate(args) => validating::validate(&shell, args),
         Action::Light(args) => commands::light(&shell, args),
         Action::Lsp(_) => Ok(()),

@@ -43,6 +43,7 @@ impl Shell {
             | Command::Render
             | Command::Watch
             | Command::Fly
+            | Command::Export
             | Command::Validate
             | Command::Light
             | Command::Lsp => ModelOutput::Error,

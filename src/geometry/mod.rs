@@ -11,6 +11,7 @@ pub mod chart;
 pub mod curved;
 pub mod import;
 pub mod interval;
+pub mod painted;
 pub mod polygon;
 pub mod quadratic;
 pub mod reduce;

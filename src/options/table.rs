@@ -32,6 +32,8 @@ pub enum Command {
     Watch,
     /// Makes the frames of a film.
     Fly,
+    /// Writes the lit surfaces.
+    Export,
     /// Counts the light on organs.
     Light,
     /// Serves an editor.
@@ -40,15 +42,19 @@ pub enum Command {
     Validate,
 }
 
-use Command::{Derive, Fly, Light, Render, Validate, Watch};
+use Command::{Derive, Export, Fly, Light, Render, Validate, Watch};
 /// Commands that run the model.
-const GROWING: &[Command] = &[Derive, Render, Watch, Fly, Light];
+const GROWING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light];
 /// Commands that draw random numbers and work in parallel.
-const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Light, Validate];
+const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light, Validate];
 /// Commands that make pictures.
 const PICTURING: &[Command] = &[Render, Watch, Fly];
+/// Commands that have a camera and light that all cameras share.
+const SOLVING: &[Command] = &[Render, Watch, Fly, Export];
+/// Commands that trace single light paths.
+const TRACING: &[Command] = &[Render, Watch, Fly, Light];
 /// Commands that trace light.
-const LIGHTING: &[Command] = &[Render, Watch, Fly, Light];
+const LIGHTING: &[Command] = &[Render, Watch, Fly, Export, Light];
 
 /// Where an option stands in the file beside a model, and under which heading it is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -223,28 +229,28 @@ options! {
     threads: Option<Threads> = "auto", "threads", "N", Model, Machine, WORKING;
 
     /// Where the camera stands, in metres; `auto`: where all of the model is in view
-    eye: Option<DVec3> = "auto", "eye", "X,Y,Z", Camera, View, PICTURING;
+    eye: Option<DVec3> = "auto", "eye", "X,Y,Z", Camera, View, SOLVING;
     /// The point in the middle of the picture, in metres; `auto`: the middle of the model
-    target: Option<DVec3> = "auto", "target", "X,Y,Z", Camera, View, PICTURING;
+    target: Option<DVec3> = "auto", "target", "X,Y,Z", Camera, View, SOLVING;
     /// The direction that points up in the picture
-    up: DVec3 = "0,0,1", "up", "X,Y,Z", Camera, View, PICTURING;
+    up: DVec3 = "0,0,1", "up", "X,Y,Z", Camera, View, SOLVING;
     /// Vertical field of view in degrees
-    fov: Angle = "40", "fov", "DEG", Camera, View, PICTURING;
+    fov: Angle = "40", "fov", "DEG", Camera, View, SOLVING;
 
     /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap), `radiosity` (what matt surfaces send each other, solved once on the surfaces) or `raytracer` (direct light, mirrors and glass: fast)
-    renderer: Renderer = "path", "renderer", "NAME", Render, Solution, PICTURING;
+    renderer: Renderer = "path", "renderer", "NAME", Render, Solution, SOLVING;
     /// Preset: `draft`, `preview` or `final`
-    quality: Quality = "preview", "quality", "NAME", Render, View, PICTURING;
+    quality: Quality = "preview", "quality", "NAME", Render, View, SOLVING;
     /// Size of the picture in pixels
-    size: Size = "960x640", "size", "WxH", Render, View, PICTURING;
+    size: Size = "960x640", "size", "WxH", Render, View, SOLVING;
     /// Light paths traced for each pixel
     samples: NonZeroU32 = "64", "samples", "N", Render, View, PICTURING;
     /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
-    max_depth: Option<u32> = "none", "max-depth", "N", Render, View, LIGHTING;
+    max_depth: Option<u32> = "none", "max-depth", "N", Render, View, TRACING;
     /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
     supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
     /// How often the ray tracer, photon mapping and radiosity follow a ray through mirrors and glass
-    recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, PICTURING;
+    recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, SOLVING;
     /// Photons that photon mapping sends to all surfaces
     global_photons: PhotonCount = "1000000", "global-photons", "N", Render, Solution, PICTURING;
     /// Photons that it sends to mirrors and glass for caustics; `auto`: a million where there are any
@@ -256,23 +262,23 @@ options! {
     /// Rays by which photon mapping gathers indirect light anew where the camera looks; `0`: none, straight from the photons, blotchier
     final_gather: GatherRays = "256", "final-gather", "N", Render, View, PICTURING;
     /// How radiosity is solved: `gather` (each patch collects from all others), `shoot` (the brightest patches shoot) or `stochastic` (all patches shoot rays; for plants); `auto`: `gather` up to 20,000 patches, beyond `stochastic`
-    solver: Option<Solver> = "auto", "solver", "NAME", Render, Solution, PICTURING;
+    solver: Option<Solver> = "auto", "solver", "NAME", Render, Solution, SOLVING;
     /// How finely a patch looks around in radiosity: pixels along an edge of GroIMP's hemicube, or the root of four times as many rays
-    hemicube_pixels: HemicubePixels = "32", "hemicube-pixels", "N", Render, Solution, PICTURING;
+    hemicube_pixels: HemicubePixels = "32", "hemicube-pixels", "N", Render, Solution, SOLVING;
     /// Edge of the hemicube in metres: what is nearer than half of it is not seen; `auto`: next to nothing
-    hemicube_size: Option<Width> = "auto", "hemicube-size", "M", Render, Solution, PICTURING;
+    hemicube_size: Option<Width> = "auto", "hemicube-size", "M", Render, Solution, SOLVING;
     /// What form factors of radiosity come from: `rays`, `hemicube` (GroIMP's way) or `analytic` (closed forms between near patches, rays elsewhere)
-    form_factors: FormFactorMethod = "rays", "form-factors", "NAME", Render, Solution, PICTURING;
+    form_factors: FormFactorMethod = "rays", "form-factors", "NAME", Render, Solution, SOLVING;
     /// Patches of radiosity are split where light differs over them by more than this part of it
-    subdivision_threshold: Threshold = "0.15", "subdivision-threshold", "X", Render, Solution, PICTURING;
+    subdivision_threshold: Threshold = "0.15", "subdivision-threshold", "X", Render, Solution, SOLVING;
     /// How often they are split at most
-    subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, PICTURING;
+    subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, SOLVING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
     time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture
-    exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, PICTURING;
+    exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, SOLVING;
 
     /// Layers (`setLayer`) whose nodes are neither drawn nor shine; `none`
     hide_layers: Layers = "none", "hide-layers", "N,N", Render, Scene, LIGHTING;

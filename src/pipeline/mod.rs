@@ -12,6 +12,7 @@ pub mod charts;
 pub mod constants;
 pub mod content_hash;
 pub mod course;
+pub mod exporting;
 pub mod exposing;
 pub mod failure;
 pub mod filming;

@@ -143,6 +143,48 @@ impl SolutionTarget {
     }
 }
 
+/// A mesh in binary glTF to be.
+#[derive(Clone, Debug)]
+pub struct GlbTarget {
+    path: PathBuf,
+}
+
+impl GlbTarget {
+    /// A mesh at `path`.
+    ///
+    /// # Errors
+    /// If the suffix is not `.glb`, files cannot be made there, or something else is there already.
+    pub fn new(world: &dyn World, path: &Path) -> Result<Self, Failure> {
+        if path.extension().is_none_or(|suffix| suffix != "glb") {
+            return Err(Failure::Usage(format!(
+                "`{}` does not end in `.glb`, binary glTF, the only kind of mesh that is written",
+                path.display()
+            )));
+        }
+        let target = Self {
+            path: path.to_owned(),
+        };
+        target.check(world)?;
+        Ok(target)
+    }
+
+    /// Writes the file; gives its hash.
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there before is then untouched.
+    pub fn write(&self, world: &dyn World, bytes: &[u8]) -> Result<ContentHash, Failure> {
+        self.check(world)?;
+        put(world, &self.path, bytes)?;
+        Ok(ContentHash::of([bytes]))
+    }
+
+    fn check(&self, world: &dyn World) -> Result<(), Failure> {
+        may_write(world, &self.path, "a mesh in binary glTF", |head| {
+            head.starts_with(b"glTF")
+        })
+    }
+}
+
 /// A table to be.
 #[derive(Clone, Debug)]
 pub struct CsvTarget {

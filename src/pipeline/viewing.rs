@@ -46,7 +46,7 @@ pub struct Viewing<'a> {
 
 /// A scene made ready for one method.
 pub struct Prepared<'s> {
-    estimator: Box<dyn RadianceEstimator + 's>,
+    pub(super) estimator: Box<dyn RadianceEstimator + 's>,
 }
 
 /// What the camera saw.
@@ -310,7 +310,7 @@ impl Viewing<'_> {
         }
     }
 
-    fn context<'c>(
+    pub(super) fn context<'c>(
         &self,
         cancel: &'c CancelToken,
         progress: &'c (dyn Fn(Progress) + Sync),
@@ -357,7 +357,7 @@ fn method(options: &Options) -> Method {
     }
 }
 
-fn failure(error: &RenderError) -> Failure {
+pub(super) fn failure(error: &RenderError) -> Failure {
     match error {
         RenderError::Cancelled { .. } => Failure::Stopped,
         RenderError::TooManyPhotons { n, most } => Failure::World(format!(

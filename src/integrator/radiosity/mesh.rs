@@ -59,7 +59,7 @@ struct Grid {
 }
 
 /// All cells of a scene.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Mesh {
     pub(super) charts: Vec<PlacedChart>,
     grids: Vec<Grid>,

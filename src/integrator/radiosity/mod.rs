@@ -25,6 +25,7 @@ mod analytic;
 mod gather;
 mod hemicube;
 mod mesh;
+mod painted;
 mod polygon;
 mod rays;
 mod refine;

@@ -33,7 +33,7 @@ pub(super) struct Vertices {
 }
 
 /// Corners by place.
-struct Welder {
+pub(super) struct Welder {
     width: f64,
     /// Vertices in each cell of space. Only looked up, never gone through.
     cells: HashMap<I64Vec3, Vec<u32>>,
@@ -42,7 +42,8 @@ struct Welder {
 }
 
 impl Welder {
-    fn new(size: f64) -> Self {
+    /// For a scene of this size, metres.
+    pub(super) fn new(size: f64) -> Self {
         Self {
             width: size * WELD,
             cells: HashMap::new(),
@@ -56,7 +57,7 @@ impl Welder {
     }
 
     /// The vertex at a place with about this normal.
-    fn find(&self, position: DVec3, normal: DVec3) -> Option<u32> {
+    pub(super) fn find(&self, position: DVec3, normal: DVec3) -> Option<u32> {
         let cell = self.cell(position);
         for k in 0..27 {
             let step = I64Vec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
@@ -71,7 +72,7 @@ impl Welder {
         None
     }
 
-    fn find_or_add(&mut self, position: DVec3, normal: DVec3) -> u32 {
+    pub(super) fn find_or_add(&mut self, position: DVec3, normal: DVec3) -> u32 {
         self.find(position, normal).unwrap_or_else(|| {
             let at = self.vertices.len() as u32;
             self.vertices.push(Vertex {
@@ -87,7 +88,7 @@ impl Welder {
 }
 
 /// Pairs of corners that an edge joins, for cells of three and of four corners.
-const EDGES: [&[[usize; 2]]; 2] = [&[[0, 1], [1, 2], [2, 0]], &[[0, 1], [1, 3], [3, 2], [2, 0]]];
+pub(super) const EDGES: [&[[usize; 2]]; 2] = [&[[0, 1], [1, 2], [2, 0]], &[[0, 1], [1, 3], [3, 2], [2, 0]]];
 
 impl Vertices {
     /// Shares the irradiance of elements, given per node (front, back). `size` is that of the scene in metres.
