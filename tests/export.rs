@@ -118,7 +118,14 @@ fn shade(at: DVec3) -> Option<bool> {
 #[test]
 fn corners_have_the_light_that_falls_there() {
     let folder = folder();
-    let words = ["--renderer", "radiosity", "-o", "m.glb"];
+    let words = [
+        "--renderer",
+        "radiosity",
+        "--hemicube-pixels",
+        "8",
+        "-o",
+        "m.glb",
+    ];
     let done = export(folder.path(), &words);
     assert_eq!(done.status.code(), Some(0), "{}", text(&done));
     let bytes = fs::read(folder.path().join("m.glb")).unwrap();
@@ -179,6 +186,8 @@ fn the_file_is_the_same_for_any_number_of_threads() {
             threads,
             "--subdivision-depth",
             "0",
+            "--hemicube-pixels",
+            "4",
             "-o",
             &name,
         ];

@@ -1,6 +1,8 @@
 //! The commands that run once.
 
-use super::args::{CheckArgs, DeriveArgs, ExportArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs};
+use super::args::{
+    CheckArgs, DeriveArgs, ExportArgs, LightArgs, ModelArg, Print, RenderArgs, SolutionArgs,
+};
 use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
@@ -125,9 +127,7 @@ pub(super) fn export(shell: &Shell, args: &ExportArgs) -> Result<(), Failure> {
         exporting::check(&run.options)?;
         studio.solution_files.check(&run.options)?;
         viewpoint::check(&run.sources, &run.options)?;
-        let exported = shell
-            .making(Partial::Drop)
-            .surfaces(studio, run, &target)?;
+        let exported = shell.making(Partial::Drop).surfaces(studio, run, &target)?;
         shell.terminal.note(&format!(
             "{}: {} triangles, {} corners ({})",
             output.display(),

@@ -37,6 +37,9 @@ pub struct FileCamera {
 /// Steps of a stored colour.
 const COLOR_STEPS: f64 = 65_535.0;
 
+/// What the camera of the file sees begins at this part of the size of all.
+const NEAREST: f64 = 1000.0;
+
 /// Numbers of glTF for types and targets.
 const FLOAT: u32 = 5126;
 const UNSIGNED_SHORT: u32 = 5123;
@@ -192,7 +195,7 @@ impl PaintedMesh {
         if let Some(camera) = camera {
             let size = f64::from((high - low).length());
             document["cameras"] = json!([{ "type": "perspective", "perspective": {
-                "yfov": camera.fov, "aspectRatio": camera.aspect, "znear": size * 1e-3,
+                "yfov": camera.fov, "aspectRatio": camera.aspect, "znear": size / NEAREST,
             } }]);
             let axes = [camera.right, camera.up, camera.right.cross(camera.up)];
             let [right, up, back] = axes.map(y_up);

@@ -239,3 +239,9 @@ pub const HEMICUBE_NEAR: f64 = 1e-4;
 /// Neighbours in the same plane differ by a few roundings in `f64`; what is that low sends 10⁻¹⁸ of its light. Used by
 /// [`crate::integrator::radiosity`].
 pub const HEMICUBE_HORIZON: f64 = 1e-9;
+
+/// How far above a surface the eye is that looks straight down on it for its colour, as a share of the size of the scene.
+///
+/// Larger than the steps that keep rays off the surface they leave, smaller than what is drawn apart from it. Used by
+/// [`crate::integrator::radiosity`].
+pub const ABOVE_SURFACE: f64 = 1e-6;

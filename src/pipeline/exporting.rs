@@ -97,7 +97,8 @@ impl Making<'_> {
             aspect: run.options.size.value.aspect(),
         };
         let hash = studio.seconds.time(self.world, Phase::Write, || {
-            let nothing = || Failure::World("the model has no surfaces that could be written".into());
+            let nothing =
+                || Failure::World("the model has no surfaces that could be written".into());
             let file = painted.to_glb(Some(&camera)).ok_or_else(nothing)?;
             target.write(self.world, &file)
         })?;

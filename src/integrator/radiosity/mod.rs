@@ -17,7 +17,7 @@
 //! source    what light sources give      stochastic  all patches at once, nothing stored
 //! view      from the camera              rays        form factors by rays
 //! polygon   between polygons, on paper   hemicube    drawn onto half a cube
-//!                                        analytic    on paper where that holds
+//! painted   as a mesh with colours        analytic    on paper where that holds
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
 

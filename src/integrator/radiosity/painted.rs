@@ -18,6 +18,7 @@ use crate::geometry::chart::Form;
 use crate::geometry::painted::PaintedMesh;
 use crate::geometry::unit::Face;
 use crate::integrator::{Progress, RadianceEstimator, RayCounts, RenderContext, RenderError};
+use crate::math::tolerance::ABOVE_SURFACE;
 use crate::math::{Ray, rng};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::{PlacedChart, Scene};
@@ -45,9 +46,6 @@ const SAMPLES: u32 = 8;
 
 /// Part of the way from a corner to the middle at which light is asked for: at the corner itself there may be a wall.
 const INWARD: f64 = 1.0 / 64.0;
-
-/// How far above a surface the eye is that looks at it, as a part of the size of the scene.
-const ABOVE: f64 = 1e-6;
 
 /// Parts of a turn that a cell may go round: the corners of larger ones would lie on a line.
 const WIDEST_TURN: f64 = 0.25;
@@ -190,7 +188,7 @@ impl Painter<'_> {
         } else {
             -point.normal_g
         };
-        let eye = point.spawn_ray(out).origin + out * (ABOVE * self.size);
+        let eye = point.spawn_ray(out).origin + out * (ABOVE_SURFACE * self.size);
         let ray = Ray::new(eye, -out);
         let seed = self.context.seed;
         let stream = rng::hash(&[seed, PAINT, u64::from(node), k, side as u64]);
@@ -382,11 +380,18 @@ impl Painter<'_> {
         if turn.dot(middle.normal) < 0.0 {
             outline.reverse();
         }
-        let n_sides = if are_dark[at.cell.chart as usize] { 1 } else { 2 };
+        let n_sides = if are_dark[at.cell.chart as usize] {
+            1
+        } else {
+            2
+        };
         for side in 0..n_sides {
             let colors = &self.colors[node as usize][side];
             let color = (self.shown)(colors[uvs.len()]);
-            let ring: Vec<u32> = outline.iter().map(|group| 2 * group + side as u32).collect();
+            let ring: Vec<u32> = outline
+                .iter()
+                .map(|group| 2 * group + side as u32)
+                .collect();
             painted.add_face(&ring, (middle.position, color), side == 1);
         }
     }

@@ -88,7 +88,8 @@ impl Welder {
 }
 
 /// Pairs of corners that an edge joins, for cells of three and of four corners.
-pub(super) const EDGES: [&[[usize; 2]]; 2] = [&[[0, 1], [1, 2], [2, 0]], &[[0, 1], [1, 3], [3, 2], [2, 0]]];
+pub(super) const EDGES: [&[[usize; 2]]; 2] =
+    [&[[0, 1], [1, 2], [2, 0]], &[[0, 1], [1, 3], [3, 2], [2, 0]]];
 
 impl Vertices {
     /// Shares the irradiance of elements, given per node (front, back). `size` is that of the scene in metres.
