@@ -314,6 +314,12 @@ impl<'s> Sources<'s> {
         Some((light, point.spawn_ray_to(target.position)))
     }
 
+    /// Whether the sky shines, besides the disk of the sun.
+    #[must_use]
+    pub fn has_sky(&self) -> bool {
+        !self.dome.is_dark()
+    }
+
     /// Radiance of the sky in a direction, without the disk of the sun.
     #[must_use]
     pub fn sky_radiance(&self, w: DVec3) -> Rgb {

@@ -9,8 +9,8 @@
 //! Rays that end nearer than the map can resolve gather on with one ray, so corners do not leak.
 //!
 //! Where indirect light changes slowly it comes from a [cache](super::cache). Elsewhere (in corners, far away) each sample of
-//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up. From leaves it is one, which also finds its part of
-//! the direct light.
+//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up. From leaves, and under a sky, it is one, which
+//! also finds its part of the direct light.
 
 use super::cache::{Asked, Gather, IrradianceCache, Place};
 use super::hemisphere::{Gathered, Hemisphere};
@@ -34,7 +34,7 @@ const FIRST_VERTEX: u32 = 1 << 22;
 const VERTICES: u32 = 1 << 8;
 
 /// Rays of the cache for each ray of a sample of the picture: samples of a pixel add up.
-const RAYS_PER_OWN: u32 = 256;
+const RAYS_PER_OWN: u32 = 32;
 
 /// Rays of a first look round a place.
 const LOOKS: u32 = 12;

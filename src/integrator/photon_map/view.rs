@@ -123,7 +123,9 @@ impl View<'_> {
                     }
                 };
                 let cached = sides.each_ref().map(cached);
-                if cached.iter().all(|(_, certain)| *certain <= 0.0) {
+                // Under a sky its direct light is the noise: more rays than one would do little.
+                let is_unknown = cached.iter().all(|(_, certain)| *certain <= 0.0);
+                if is_unknown && self.viewer.sources.has_sky() {
                     Indirect::OneRay(OWN)
                 } else {
                     Indirect::Gathered(cached)
