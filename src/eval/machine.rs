@@ -11,6 +11,7 @@ use super::program::Program;
 use super::random::JavaRandom;
 use super::stack::{Kind, Local, Stack};
 use super::text::Text;
+use super::trace::Trace;
 use super::trap::{Cause, Trap};
 use super::value::{MAX_TEXT, Value};
 use crate::diag::Span;
@@ -96,6 +97,8 @@ pub struct Machine {
     pub is_finished: bool,
     /// Whether rules that are templates are applied in bulk; the result is the same.
     pub uses_templates: bool,
+    /// What of the text was used since somebody last asked.
+    pub trace: Trace,
     /// A step that could not be applied. The model goes on without it and fails when the entry method ends.
     failed_step: Option<Trap>,
     /// Rules that this step has applied so far, the first few, for messages.
@@ -168,6 +171,7 @@ impl Machine {
             step: 0,
             is_finished: false,
             uses_templates: true,
+            trace: Trace::new(program.n_methods()),
             failed_step: None,
             applied: vec![],
             limits: setup.limits,
@@ -324,6 +328,7 @@ impl Machine {
 
     /// Notes that the rule at `span` has queued something.
     pub fn note_rule(&mut self, span: Span) {
+        self.trace.rules.insert(span);
         if self.applied.len() < MOST_RULES && !self.applied.contains(&span) {
             self.applied.push(span);
         }

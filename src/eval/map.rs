@@ -106,6 +106,12 @@ impl JavaMap {
         n
     }
 
+    /// All keys and values; whoever changes a key leaves its hash code as it is.
+    pub(super) fn parts_mut(&mut self) -> impl Iterator<Item = &mut Value> {
+        let slots = self.slots.iter_mut().flatten();
+        slots.flat_map(|slot| [&mut slot.entry.0, &mut slot.entry.1])
+    }
+
     /// All keys and values.
     pub(super) fn into_parts(self) -> impl Iterator<Item = Value> {
         let slots = self.slots.into_iter().flatten();

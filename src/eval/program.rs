@@ -15,6 +15,8 @@ use crate::diag::Span;
 use crate::graph::{NodeId, TypeId, TypeTable};
 use crate::rewrite::Instantiated;
 
+mod calls;
+
 /// Variables of the model as code refers to them.
 #[derive(Debug, Default)]
 pub struct Outline {
@@ -29,8 +31,8 @@ pub struct Program {
     methods: Vec<Method>,
     /// By node type; `None` for built-in types.
     modules: Vec<Option<Module>>,
-    /// Initializers of the variables of the model, in order.
-    statics: Vec<Body>,
+    /// Initializers of the variables of the model, in order, with their numbers.
+    statics: Vec<(u32, Body)>,
     startup: Option<MethodId>,
     init: Option<MethodId>,
     entries: Vec<(String, MethodId)>,
@@ -90,7 +92,8 @@ impl Program {
             .collect();
         let statics = model.statics.iter().enumerate().filter_map(|(i, s)| {
             let init = s.init.as_ref()?;
-            Some(compiler.initializer(outline.statics.local_at(i), &s.ty, init, &s.frame))
+            let local = outline.statics.local_at(i);
+            Some((i as u32, compiler.initializer(local, &s.ty, init, &s.frame)))
         });
         let statics = statics.collect();
         let (types, init, entries) = (
@@ -121,6 +124,11 @@ impl Program {
     /// Methods that can be chosen as the step, with their names.
     pub fn entries(&self) -> &[(String, MethodId)] {
         &self.entries
+    }
+
+    /// Number of its methods.
+    pub fn n_methods(&self) -> usize {
+        self.methods.len()
     }
 
     /// Whether the model has an `init`.
@@ -170,9 +178,17 @@ impl Program {
     /// Runs the initializers of the variables of the model.
     pub fn initialize(&self, machine: &mut Machine) -> Result<(), Trap> {
         machine.statics = self.new_statics();
-        self.statics
-            .iter()
-            .try_for_each(|body| self.run(body, machine, machine.stack.mark()).map(drop))
+        self.initialize_some(machine, &|_| true)
+    }
+
+    /// Runs the initializers of some variables of the model, in order.
+    pub fn initialize_some(
+        &self,
+        machine: &mut Machine,
+        is_wanted: &dyn Fn(u32) -> bool,
+    ) -> Result<(), Trap> {
+        let mut wanted = self.statics.iter().filter(|(number, _)| is_wanted(*number));
+        wanted.try_for_each(|(_, body)| self.run(body, machine, machine.stack.mark()).map(drop))
     }
 
     /// Runs `startup`, if there is one, and applies what it has queued.
@@ -219,6 +235,7 @@ impl Program {
             ));
         };
         m.enter_call(&method.name, span)?;
+        m.trace.call(id);
         m.stack.enter(mark, &method.layout);
         // A method that ends without `return` gives zero.
         m.stack.result_word = 0;
@@ -249,102 +266,6 @@ impl Program {
     /// Whether a method has a `this`.
     pub(super) fn has_this(&self, id: MethodId) -> bool {
         self.methods[id.0 as usize].this.is_some()
-    }
-
-    /// Calls a method of the model from inside of the library: on `this`, with boxed arguments, for a boxed value.
-    pub(super) fn call_method(
-        &self,
-        m: &mut Machine,
-        id: MethodId,
-        this: &Value,
-        args: &[Value],
-        span: Span,
-    ) -> Result<Value, Trap> {
-        let method = &self.methods[id.0 as usize];
-        let mark = m.stack.mark();
-        if method.this.is_some() {
-            match this {
-                Value::Node(node) => Some(*node).push(&mut m.stack),
-                object => object.clone().push(&mut m.stack),
-            }
-        }
-        for (ty, arg) in method.params.iter().zip(args) {
-            if let Err(trap) = self.push_argument(m, ty, arg, span) {
-                m.stack.release(mark);
-                return Err(trap);
-            }
-        }
-        self.run_method(id, m, mark, span)?;
-        let stack = &mut m.stack;
-        Ok(match &method.result {
-            Type::Void => Value::Null,
-            Type::Boolean => Value::Boolean(bool::take_result(stack)),
-            Type::Byte | Type::Short | Type::Char | Type::Int => {
-                Value::Int(i32::take_result(stack))
-            }
-            Type::Long => Value::Long(i64::take_result(stack)),
-            Type::Float => Value::Float(f32::take_result(stack)),
-            Type::Double => Value::Double(f64::take_result(stack)),
-            Type::Node(_) => Option::<NodeId>::take_result(stack).map_or(Value::Null, Value::Node),
-            _ => Value::take_result(stack),
-        })
-    }
-
-    /// Pushes a boxed value as an argument of type `ty`; a value of another type is an exception.
-    fn push_argument(
-        &self,
-        m: &mut Machine,
-        ty: &Type,
-        arg: &Value,
-        span: Span,
-    ) -> Result<(), Trap> {
-        let is_foreign = match ty {
-            Type::Node(wanted) => match arg {
-                Value::Null => false,
-                Value::Node(node) => !m.graph.is_a(*node, *wanted),
-                _ => true,
-            },
-            Type::Instance(wanted) => {
-                let is_one = |ty: TypeId| {
-                    let interfaces = self.interfaces.get(&ty);
-                    self.types.is_a(ty, *wanted) || interfaces.is_some_and(|i| i.contains(wanted))
-                };
-                !arg.is_null() && !arg.type_in(&m.graph).is_some_and(is_one)
-            }
-            Type::Boolean => arg.as_boolean().is_none(),
-            Type::Byte
-            | Type::Short
-            | Type::Char
-            | Type::Int
-            | Type::Long
-            | Type::Float
-            | Type::Double => arg.as_double().is_none(),
-            Type::String => arg.as_text().is_none() && !arg.is_null(),
-            _ => false,
-        };
-        if is_foreign {
-            let mut text = String::new();
-            m.append_text(arg, &mut text);
-            let message = format!("`{text}` is not of the type that the method takes");
-            return Err(Trap::exception(
-                crate::library::ClassId::ClassCastException,
-                message,
-                span,
-            ));
-        }
-        let stack = &mut m.stack;
-        match ty {
-            Type::Boolean => arg.as_boolean().unwrap_or(false).push(stack),
-            Type::Byte | Type::Short | Type::Char | Type::Int => {
-                arg.as_int().unwrap_or(0).push(stack);
-            }
-            Type::Long => arg.as_long().unwrap_or(0).push(stack),
-            Type::Float => arg.as_float().unwrap_or(0.0).push(stack),
-            Type::Double => arg.as_double().unwrap_or(0.0).push(stack),
-            Type::Node(_) => arg.as_node().push(stack),
-            _ => arg.clone().push(stack),
-        }
-        Ok(())
     }
 
     /// Runs the constructor of a module; the node and its arguments were pushed since `mark`.
@@ -378,6 +299,7 @@ impl Program {
             return Ok(Instantiated::default());
         };
         let mark = m.stack.mark();
+        m.trace.has_drawn = true;
         m.enter_call(&self.types[ty].name, module.span)?;
         Some(node).push(&mut m.stack);
         m.queue.begin_instantiation();

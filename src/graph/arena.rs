@@ -137,6 +137,10 @@ impl<O: Clone + Default> ObjectArena<O> {
         }
     }
 
+    pub(super) fn iter_mut(&mut self) -> impl Iterator<Item = &mut O> {
+        self.objects.iter_mut()
+    }
+
     pub(super) fn n_used(&self) -> usize {
         self.objects.len() - self.free.len()
     }

@@ -14,6 +14,8 @@ struct Extent {
     /// Node places in order of insertion; [`NIL`] where one was removed.
     places: Vec<u32>,
     n_removed: usize,
+    /// Whether there ever was a node.
+    is_used: bool,
 }
 
 impl Extent {
@@ -45,7 +47,9 @@ impl Extents {
 
     /// Adds a node at the end and returns its place.
     pub(super) fn push(&mut self, ty: TypeId, index: u32) -> u32 {
-        let places = &mut self.by_type[usize::from(ty.0)].places;
+        let extent = &mut self.by_type[usize::from(ty.0)];
+        extent.is_used = true;
+        let places = &mut extent.places;
         places.push(index);
         (places.len() - 1) as u32
     }
@@ -78,7 +82,20 @@ impl Extents {
         length: usize,
         node: impl Fn(usize, usize) -> u32 + Sync,
     ) {
-        extend(&mut self.by_type[usize::from(ty.0)].places, n, length, node);
+        let extent = &mut self.by_type[usize::from(ty.0)];
+        extent.is_used |= n * length > 0;
+        extend(&mut extent.places, n, length, node);
+    }
+
+    /// Notes that there is a node of this type, in the graph or not.
+    #[inline]
+    pub(super) fn note(&mut self, ty: TypeId) {
+        self.by_type[usize::from(ty.0)].is_used = true;
+    }
+
+    /// By type, whether there ever was a node of it.
+    pub(super) fn used(&self) -> Vec<bool> {
+        self.by_type.iter().map(|extent| extent.is_used).collect()
     }
 
     /// Number of places in the extent of a type, gaps included.

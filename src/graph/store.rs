@@ -122,6 +122,31 @@ impl<O: Payload> Graph<O> {
         Ok(graph)
     }
 
+    /// By type, whether there ever was a node of exactly it.
+    pub fn used_types(&self) -> Vec<bool> {
+        self.extents.used()
+    }
+
+    /// What object fields hold, in no order.
+    pub fn objects_mut(&mut self) -> impl Iterator<Item = &mut O> {
+        let side = self.side.values_mut().filter_map(|value| match value {
+            SideValue::Object(object) => Some(object),
+            SideValue::Words(_) => None,
+        });
+        self.objects.iter_mut().chain(side)
+    }
+
+    /// Goes on with these types, equal to those it has, and this limit.
+    pub fn adopt(&mut self, types: Arc<TypeTable>, limit: usize) {
+        self.types = types;
+        self.limit = limit;
+    }
+
+    /// Places for nodes, taken or not: a measure of the memory it takes.
+    pub fn n_places(&self) -> usize {
+        self.nodes.len()
+    }
+
     /// The types of its nodes.
     pub fn types(&self) -> &Arc<TypeTable> {
         &self.types
@@ -162,6 +187,7 @@ impl<O: Payload> Graph<O> {
         if self.n_nodes() >= self.limit.min(MOST_NODES) || self.words.len() > MOST_WORDS {
             return Err(GraphError::TooManyNodes { limit: self.limit });
         }
+        self.extents.note(ty);
         let words = self.words.allocate(self.types[ty].template());
         let index = match self.free_nodes.pop() {
             Some(index) => index as usize,

@@ -39,9 +39,9 @@ impl Default for GrowthOptions {
 /// Same model, seed and number of steps give the same graph on every machine.
 pub struct Growth {
     program: Arc<Program>,
-    machine: Machine,
+    pub(super) machine: Machine,
     options: GrowthOptions,
-    n_steps: u64,
+    pub(super) n_steps: u64,
 }
 
 impl Growth {
@@ -244,7 +244,7 @@ impl Growth {
         }))
     }
 
-    fn run_deep(
+    pub(super) fn run_deep(
         &mut self,
         what: String,
         f: impl FnOnce(&Program, &mut Machine) -> Result<(), Trap> + Send,

@@ -2,9 +2,12 @@
 
 mod between;
 mod deep;
+mod edits;
 mod grow;
+mod resume;
 mod sketch;
 
 pub use between::Earlier;
+pub use edits::{Outline, StepTrace};
 pub use grow::{Growth, GrowthOptions};
 pub use sketch::Sketch;

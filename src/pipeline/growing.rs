@@ -3,6 +3,7 @@
 use super::audience::Audience;
 use super::budget;
 use super::failure::Failure;
+use super::history::History;
 use super::inputs::class_name;
 use super::light_models::SceneLight;
 use super::sources::{Sources, placeless};
@@ -139,17 +140,19 @@ fn hint_at_files(sources: &Sources, found: &mut Diagnostics) {
     }
 }
 
-/// Grows a model by the steps that the options ask for, within `memory` bytes.
+/// Grows a model by the steps that the options ask for, within `memory` bytes; from the last of them that `history` knows on.
+/// Also tells how many it knew.
 ///
 /// # Errors
 /// What goes wrong in the model, or that it was stopped.
-pub fn grow(
+pub(super) fn grow(
     run: &Run,
     files: Box<dyn ModelFiles>,
     memory: u64,
     audience: &Arc<dyn Audience>,
     cancel: &CancelToken,
-) -> Result<Growth, Failure> {
+    mut history: Option<&mut History>,
+) -> Result<(Growth, u32), Failure> {
     let blame = |fault: Box<Diagnostic>| blame_growth(run, memory, cancel, *fault);
     let limits = eval::Limits::default();
     let nodes = run
@@ -169,7 +172,11 @@ pub fn grow(
         entry: run.options.entry.value.clone(),
     };
     let listener = audience.clone();
-    let output = Box::new(move |text: &str| listener.printed(text));
+    let notebook = history.as_ref().map(|history| history.notebook());
+    let output = Box::new(move |text: &str| {
+        listener.printed(text);
+        notebook.iter().for_each(|notebook| notebook(text));
+    });
     let token = cancel.clone();
     let stop = Box::new(move || token.is_cancelled());
     let mut growth = Growth::new(&run.model, options, output, stop).map_err(blame)?;
@@ -181,16 +188,31 @@ pub fn grow(
         audience: audience.clone(),
         pictures: DecodedPictures::default(),
     }));
-    growth.init().map_err(blame)?;
     let n_steps = steps(&run.options, &growth);
-    for step in 0..n_steps {
+    let known = match &mut history {
+        Some(history) => history
+            .resume(&mut growth, n_steps, &**audience)
+            .map_err(blame)?,
+        None => None,
+    };
+    if known.is_none() {
+        growth.init().map_err(blame)?;
+        if let Some(history) = &mut history {
+            history.note(&mut growth, run, n_steps == 0);
+        }
+    }
+    let first = known.unwrap_or(0);
+    for step in first..n_steps {
         if cancel.is_cancelled() {
             return Err(Failure::Stopped);
         }
         growth.step().map_err(blame)?;
+        if let Some(history) = &mut history {
+            history.note(&mut growth, run, step + 1 == n_steps);
+        }
         audience.progress(u64::from(step) + 1, u64::from(n_steps));
     }
-    Ok(growth)
+    Ok((growth, first))
 }
 
 /// Grows a model by one more step.

@@ -36,6 +36,11 @@ impl Reads {
         self.lock()[reader as usize].clear();
     }
 
+    /// Whether a stage has read anything.
+    pub fn has_any(&self, reader: Reader) -> bool {
+        !self.lock()[reader as usize].is_empty()
+    }
+
     /// Remembers what was found at `path`. What was found first counts: a file that changes while a model reads it twice has
     /// changed.
     pub fn record(&self, reader: Reader, path: &Path, content: Option<&[u8]>) {

@@ -114,10 +114,12 @@ impl PhaseSeconds {
 pub struct Work {
     /// Texts read and checked.
     pub checks: u64,
-    /// Models grown from their beginning.
+    /// Models grown, from their beginning or on from the last step before an edit matters.
     pub growths: u64,
-    /// Steps of growth.
+    /// Steps of growth that were made.
     pub steps: u64,
+    /// Steps that were taken over from the growth before.
+    pub kept_steps: u64,
     /// Graphs turned into shapes.
     pub drawings: u64,
     /// Acceleration structures built.

@@ -8,6 +8,7 @@ use super::constants::Change;
 use super::content_hash::ContentHash;
 use super::failure::Failure;
 use super::growing::{self, Drawn};
+use super::history::History;
 use super::inputs::Inputs;
 use super::project_files::{self, Access, ProjectFiles};
 use super::reads::{Reader, Reads};
@@ -73,6 +74,8 @@ pub struct Studio<'w> {
     pub access: Access,
     /// Constants of the model that are to have other values.
     pub changes: Vec<Change>,
+    /// The growth before.
+    history: Option<History>,
     drawn: Option<(ContentHash, Drawn)>,
     pub(super) scene: Option<(ContentHash, Arc<Scene>)>,
     /// The digest of the shapes of the scene built last.
@@ -161,6 +164,7 @@ impl<'w> Studio<'w> {
             keep,
             access: Access::default(),
             changes: Vec::new(),
+            history: None,
             drawn: None,
             scene: None,
             shapes: None,
@@ -233,13 +237,16 @@ impl<'w> Studio<'w> {
         self.reads.begin(Reader::Growth);
         let files = ProjectFiles::new(self.world, &self.path, &self.access);
         let files = Box::new(files.remembering(&self.reads));
+        let (keeps, history, reads) = (self.keep == Keep::All, &mut self.history, &self.reads);
         let grown = self.seconds.time(self.world, Phase::Derive, || {
-            growing::grow(run, files, memory, audience, cancel)
+            *history = keeps.then(|| History::begin(history.take(), run, memory, reads));
+            growing::grow(run, files, memory, audience, cancel, history.as_mut())
         });
         self.audience.ends();
-        let grown = grown?;
+        let (grown, n_known) = grown?;
         self.work.growths += 1;
-        self.work.steps += grown.steps();
+        self.work.steps += grown.steps().saturating_sub(u64::from(n_known));
+        self.work.kept_steps += u64::from(n_known);
         self.write_outputs(&grown)?;
         Ok(grown)
     }
