@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
+use std::time::Instant;
 use understory::diag::{Diagnostics, SourceMap};
 use understory::film::LinearImage;
 use understory::growth::Growth;
@@ -49,6 +50,9 @@ pub(crate) struct Drawn {
     pub(crate) image: LinearImage,
     /// Of all but the ground, in metres.
     pub(crate) bounds: Bounds3,
+    /// Seconds for the light that all views share, and for this one.
+    #[allow(dead_code, reason = "for benchmarks")]
+    pub(crate) seconds: [f64; 2],
 }
 
 impl Opened {
@@ -102,12 +106,18 @@ impl Opened {
             options: &run.options,
             cancel: &cancel,
         };
+        let begin = Instant::now();
         let solution = viewing.solve(&scene).unwrap();
         let prepared = viewing.prepare(&scene, &solution).unwrap();
+        let solved = Instant::now();
         let shot = viewing.shoot(&prepared, &camera).unwrap();
         Drawn {
             image: shot.image,
             bounds: scene.bounds(),
+            seconds: [
+                (solved - begin).as_secs_f64(),
+                solved.elapsed().as_secs_f64(),
+            ],
         }
     }
 }
