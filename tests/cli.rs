@@ -445,6 +445,17 @@ fn a_report_tells_everything() {
     assert!(report["rays"].as_u64().unwrap() >= 24 * 16 * 2);
     assert_eq!(report["options"]["size"]["origin"], "command line");
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
+
+    // Samples that are asked for on the command line win over the grid of the file.
+    bench.write("m.toml", "[render]\nsupersampling = 3\n");
+    let samples = |flags: &str| {
+        bench.succeed(&format!("render m.rgg -o m.png {flags} --report r.json"));
+        let report: serde_json::Value =
+            serde_json::from_slice(&bytes(&bench.path("r.json"))).unwrap();
+        report["samples_per_pixel"].as_u64().unwrap()
+    };
+    assert_eq!(samples(SMALL), 2);
+    assert_eq!(samples("--size 24x16"), 9);
     bench.write("notes.json", "[1, 2, 3]");
     let line = format!("render m.rgg -o m.png {SMALL} --report notes.json");
     assert!(bench.fail(&line, 3).contains("not replaced"));

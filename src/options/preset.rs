@@ -10,6 +10,7 @@ const fn values(quality: Quality) -> &'static [(&'static str, &'static str)] {
             ("samples", "8"),
             ("max-depth", "6"),
             ("global-photons", "100000"),
+            ("caustic-photons", "100000"),
             ("final-gather", "0"),
         ],
         Quality::Preview => &[],

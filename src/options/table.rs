@@ -247,7 +247,7 @@ options! {
     samples: NonZeroU32 = "64", "samples", "N", Render, View, PICTURING;
     /// Longest light path, in scattering events (0: only what shines by itself); `none`: no limit, weak paths end by chance
     max_depth: Option<u32> = "none", "max-depth", "N", Render, View, TRACING;
-    /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ
+    /// `G`×`G` samples for every pixel, GroIMP's grid; `auto`: `samples` of them, by the ray tracer only where neighbouring pixels differ, and whenever `--samples` is given and this is not
     supersampling: Option<GridSize> = "auto", "supersampling", "G", Render, View, PICTURING;
     /// How often the ray tracer, photon mapping and radiosity follow a ray through mirrors and glass
     recursion_depth: u32 = "8", "recursion-depth", "N", Render, View, SOLVING;

@@ -294,7 +294,10 @@ impl Viewing<'_> {
     fn settings(&self) -> FilmSettings {
         let options = self.options;
         let size = options.size.value;
-        let grid = options.supersampling.value.map(GridSize::samples);
+        // A number of samples that is asked for more expressly than the grid wins over it.
+        let is_beaten = options.samples.origin.beats(options.supersampling.origin);
+        let grid = options.supersampling.value.filter(|_| !is_beaten);
+        let grid = grid.map(GridSize::samples);
         let is_free_of_noise = options.renderer.value == Renderer::Raytracer;
         FilmSettings {
             width: size.width,
