@@ -2,6 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[cfg(unix)]
+#[path = "support/browser.rs"]
+#[allow(dead_code, reason = "the page of `watch` needs the rest")]
+mod browser;
 #[path = "support/opened.rs"]
 #[allow(dead_code, reason = "flights only grow models with it")]
 mod opened;
@@ -13,7 +17,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A small tree that grows.
@@ -295,26 +299,33 @@ fn parts_make_the_same_film_as_one_run() {
     assert!(bench.bytes("parts.mp4") == bench.bytes("whole.mp4"));
 }
 
+/// Kills after which it must still end in the same film.
+const KILLS: u32 = 20;
+
 #[test]
 fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
     let bench = Bench::new();
-    let words = "fly m.rgg --steps 4 --orbit --flight-frames 12 --size 64x48 --samples 4 --threads 1 --flicker 0";
+    let words = "fly m.rgg --steps 4 --orbit --flight-frames 24 --size 64x48 --samples 4 --threads 1 --flicker 0";
+    let begin = Instant::now();
     bench.succeed(&format!("{words} -o whole.mp4"));
+    let whole = begin.elapsed();
     let mut before = 0;
-    // Moments from the loading of the program to after the first frames; longer each time, so that it ends.
-    for milliseconds in [1_u64, 5, 20, 47, 90, 130, 171, 222, 333, 401] {
+    for kill in 0..KILLS {
+        // Anywhere from the loading of the program to what takes a third of the film, from one seed.
+        let chance = understory::math::rng::hash(&[20, u64::from(kill)]) >> 40;
+        let moment = whole.mul_f64(chance as f64 / f64::from(1_u32 << 24) / 3.0);
         let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
             .current_dir(bench.folder.path())
             .args(format!("{words} -o killed.mp4").split(' '))
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_millis(milliseconds));
+        std::thread::sleep(moment);
         child.kill().unwrap();
         child.wait().unwrap();
-        // What stands under the name of a frame is a whole frame.
+        // What stands under the name of a frame is a whole frame, and none is lost.
         let mut there = 0;
-        for i in 0..12 {
+        for i in 0..24 {
             let name = frame("killed.mp4.frames", i);
             if bench.path(&name).exists() {
                 assert!(
@@ -326,13 +337,126 @@ fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
         }
         assert!(there >= before, "a frame is lost");
         before = there;
+        if bench.path("killed.mp4").exists() {
+            assert!(bench.bytes("killed.mp4") == bench.bytes("whole.mp4"), "kill {kill}");
+            // Once more from the beginning: a finished film cannot be broken off.
+            fs::remove_file(bench.path("killed.mp4")).unwrap();
+            fs::remove_dir_all(bench.path("killed.mp4.frames")).unwrap();
+            before = 0;
+        }
     }
     let told = bench.succeed(&format!("{words} -o killed.mp4"));
     assert!(
-        told.contains(&format!("{} frames made", 12 - before)),
+        told.contains(&format!("{} frames made", 24 - before)),
         "{told}"
     );
     assert!(bench.bytes("killed.mp4") == bench.bytes("whole.mp4"));
+}
+
+/// Needs Chromium; with `UNDERSTORY_NEEDS_BROWSER=1`, as in CI, its absence is a failure.
+#[test]
+#[cfg(unix)]
+fn films_play_in_a_browser() {
+    let bench = Bench::new();
+    // A ball that fills the middle while the sun goes round it: each frame has a color of its own there.
+    bench.write("b.rgg", "protected void init() [ Axiom ==> Sphere(1).(setShader(RED)); ]\n");
+    let fly = "fly b.rgg --key time=0_eye=0,-3,0_target=0,0,0_sun=180,60;time=2_sun=20,2 --fps 6 --size 160x120 --samples 4 --flicker 0";
+    for film in ["a.mp4", "a.gif", "a.png", "a.webp"] {
+        bench.succeed(&format!("{fly} -o {film}"));
+    }
+    let Some(mut browser) = browser::Browser::start(640, 480, bench.folder.path()) else {
+        assert!(
+            std::env::var_os("UNDERSTORY_NEEDS_BROWSER").is_none(),
+            "there is no browser"
+        );
+        return;
+    };
+    let page = "<body style='margin:0'><video id=v src=a.mp4 muted preload=auto></video>\
+                <img src=a.gif><img src=a.png><img src=a.webp></body>";
+    bench.write("page.html", page);
+    browser.open(&format!("file://{}", bench.path("page.html").display()));
+    browser.until("document.readyState == 'complete'");
+    let video = "document.getElementById('v')";
+    browser.until(&format!("{video}.readyState == 4 || {video}.error != null"));
+    assert!(browser.ask(&format!("{video}.error")).is_null());
+    assert_eq!(browser.ask(&format!("{video}.videoWidth")), 160);
+    assert_eq!(browser.ask(&format!("{video}.videoHeight")), 120);
+    let duration = browser.ask(&format!("{video}.duration")).as_f64().unwrap();
+    assert!((duration - 13.0 / 6.0).abs() < 0.002, "{duration}");
+
+    // Each frame is there at its time, and none is black or broken.
+    for i in 0..13 {
+        let own = pixels(&bench.bytes(&frame("a.mp4.frames", i)));
+        let middle = 3 * (60 * 160 + 80);
+        let own = [own[middle], own[middle + 1], own[middle + 2]].map(f64::from);
+        assert!(own[0] > 20.0, "frame {i} shows nothing: {own:?}");
+        let time = (f64::from(i) + 0.5) / 6.0;
+        browser.ask(&format!(
+            "new Promise(done => {{ {video}.onseeked = () => done(1); {video}.currentTime = {time}; }})"
+        ));
+        // Screens follow later than seeking.
+        browser.until_seen("#v", &format!("frame {i} as {own:?}"), |shot| {
+            let shown = shot.at(0.5, 0.5);
+            (0..3).all(|channel| (shown[channel] - own[channel]).abs() < 16.0)
+        });
+    }
+
+    // Played from the beginning, it comes to its end without an error, and all frames were decoded.
+    browser.ask(&format!(
+        "new Promise(done => {{ {video}.onended = () => done(1); {video}.currentTime = 0; {video}.play(); }})"
+    ));
+    assert!(browser.ask(&format!("{video}.error")).is_null());
+    let quality = format!("{video}.getVideoPlaybackQuality()");
+    assert_eq!(browser.ask(&format!("{quality}.corruptedVideoFrames")), 0);
+    let decoded = browser.ask(&format!("{quality}.totalVideoFrames"));
+    assert!(decoded.as_u64().unwrap() >= 13, "{decoded}");
+
+    // The other films are pictures of the same size.
+    let sizes = "Promise.all([...document.images].map(i => i.decode().then(() => i.naturalWidth + 'x' + i.naturalHeight)))\
+                 .then(all => all.join())";
+    assert_eq!(browser.ask(sizes), "160x120,160x120,160x120");
+}
+
+#[test]
+fn lens_and_shutter_blur_and_without_them_nothing_changes() {
+    let bench = Bench::new();
+    let fly = format!("fly m.rgg --steps 3 --orbit --flight-frames 8 --frames 0..2 -o f {SMALL}");
+    bench.succeed(&fly);
+    let sharp = pixels(&bench.bytes(&frame("f", 1)));
+    assert!(
+        bench
+            .succeed(&format!("{fly} --shutter 0 --aperture none --focus auto"))
+            .contains("0 frames made, 2 kept")
+    );
+    for blur in ["--shutter 0.5", "--aperture 0.2", "--aperture f/0.1"] {
+        assert!(
+            bench
+                .succeed(&format!("{fly} {blur}"))
+                .contains("2 frames made ("),
+            "{blur}"
+        );
+        assert!(pixels(&bench.bytes(&frame("f", 1))) != sharp, "{blur}");
+    }
+    // The blur of a frame is part of what it is made from, though its moment is the same in a slower film.
+    bench.succeed(&format!("{fly} --shutter 0.5"));
+    let slower = fly.replace("--flight-frames 8", "--flight-frames 16");
+    let told = bench.succeed(&format!("{slower} --frames 0..1 --shutter 0.5").replace(" --frames 0..2", ""));
+    assert!(told.contains("1 frames made ("), "{told}");
+    // A camera that stands still is sharp with an open shutter.
+    let still = fly.replace("--orbit --flight-frames 8", "--key time=0_eye=2,-4,1;time=1");
+    bench.succeed(&still);
+    let closed = pixels(&bench.bytes(&frame("f", 1)));
+    bench.succeed(&format!("{still} --shutter 1 --seed 1"));
+    assert!(pixels(&bench.bytes(&frame("f", 1))) == closed);
+    for (flags, word) in [
+        ("--shutter 2", "0 (no blur) to 1"),
+        ("--aperture 0", "diameter in metres"),
+        ("--aperture f/x", "f/2.8"),
+        ("--focus -1", "metres"),
+    ] {
+        let message = bench.fail(&format!("{fly} {flags}"), 2);
+        assert!(message.contains(word), "{flags}: {message}");
+    }
 }
 
 #[test]

@@ -107,17 +107,18 @@ impl Flight {
 
     /// What frame `frame` shows; a round that goes on after its last frame begins again.
     pub fn moment(&self, frame: u32) -> Moment {
-        let mut moment = self.moment_of_way(frame);
+        let mut moment = self.moment_of_way(frame, 0.0);
         if let Some((from, to)) = self.growth {
-            let part = self.part(frame);
+            let part = self.part(frame, 0.0);
             moment.step = Some(f64::from(from) + (f64::from(to) - f64::from(from)) * part);
         }
         moment
     }
 
-    fn moment_of_way(&self, frame: u32) -> Moment {
+    /// What frame `frame` shows of the way so many frames later, 0 to 1.
+    fn moment_of_way(&self, frame: u32, later: f64) -> Moment {
         let n_frames = self.n_frames.get();
-        let turn = f64::from(frame % n_frames) / f64::from(n_frames);
+        let turn = (f64::from(frame % n_frames) + later) / f64::from(n_frames);
         let still = Moment {
             view: self.start,
             step: None,
@@ -140,24 +141,29 @@ impl Flight {
             },
             Way::Tracks(tracks) => {
                 let (start, end) = tracks.span;
-                tracks.moment(start + (end - start) * self.part(frame), still)
+                tracks.moment(start + (end - start) * self.part(frame, later), still)
             }
         }
     }
 
-    /// How much of the film has passed, 0 in the first frame and 1 in the last.
-    fn part(&self, frame: u32) -> f64 {
+    /// How much of the film has passed so many frames after this one, 0 in the first frame and 1 from the last one on.
+    fn part(&self, frame: u32, later: f64) -> f64 {
         let last = self.n_frames.get() - 1;
         if last == 0 {
             0.0
         } else {
-            f64::from(frame.min(last)) / f64::from(last)
+            ((f64::from(frame.min(last)) + later) / f64::from(last)).min(1.0)
         }
     }
 
     /// The camera's place in frame `frame`.
     pub fn view(&self, frame: u32) -> View {
         self.moment(frame).view
+    }
+
+    /// The camera's place so many frames, 0 to 1, after frame `frame`.
+    pub fn view_after(&self, frame: u32, later: f64) -> View {
+        self.moment_of_way(frame, later).view
     }
 
     /// The numbers of all frames.

@@ -13,7 +13,9 @@
 //! ```
 
 pub mod framing;
+pub mod lens;
 pub mod orbit;
 pub mod perspective;
 
+pub use lens::Lens;
 pub use perspective::{Camera, CameraError, View};

@@ -1,5 +1,6 @@
-//! The pinhole camera.
+//! The camera: a pinhole, or a [lens](super::lens), that stands still or moves while the shutter is open.
 
+use super::lens::Lens;
 use crate::math::Ray;
 use crate::math::angle::Angle;
 use crate::math::tolerance::PARALLEL_SINE;
@@ -18,15 +19,25 @@ pub struct View {
     pub fov: Angle,
 }
 
-/// A camera that sees in perspective, everything sharp.
+/// A camera that sees in perspective: everything sharp, unless it has a [`Lens`] or moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    eye: DVec3,
-    forward: DVec3,
+    /// Where it stands when the shutter opens.
+    pub(super) first: Pose,
+    /// Where it stands later, evenly spread until the shutter closes; none if it stands still.
+    pub(super) later: Vec<Pose>,
+    pub(super) lens: Option<Lens>,
+}
+
+/// Where a camera stands at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pose {
+    pub(super) eye: DVec3,
+    pub(super) forward: DVec3,
     /// From the middle of the film to its right edge, at distance 1.
-    half_right: DVec3,
+    pub(super) half_right: DVec3,
     /// From the middle of the film to its upper edge, at distance 1.
-    half_up: DVec3,
+    pub(super) half_up: DVec3,
 }
 
 /// Why there is no such camera.
@@ -79,23 +90,34 @@ impl Camera {
         let right = right.normalize();
         let half_height = view.fov.half().tan();
         Ok(Self {
-            eye: view.eye,
-            forward,
-            half_right: right * (half_height * aspect),
-            half_up: right.cross(forward) * half_height,
+            first: Pose {
+                eye: view.eye,
+                forward,
+                half_right: right * (half_height * aspect),
+                half_up: right.cross(forward) * half_height,
+            },
+            later: Vec::new(),
+            lens: None,
         })
     }
 
-    /// The ray through a film point; `film` in the unit square, y down, (0, 0) the upper left corner of the picture.
+    /// The ray through a film point and the middle of the lens when the shutter opens; `film` in the unit square, y down, (0, 0) the
+    /// upper left corner of the picture.
     pub fn ray(&self, film: DVec2) -> Ray {
-        let (x, y) = (2.0 * film.x - 1.0, 1.0 - 2.0 * film.y);
-        let direction = (self.forward + self.half_right * x + self.half_up * y).normalize();
-        Ray::new(self.eye, direction)
+        Ray::new(self.first.eye, self.first.toward(film).normalize())
     }
 
-    /// Where the camera stands, in metres.
+    /// Where the camera stands when the shutter opens, in metres.
     pub fn eye(&self) -> DVec3 {
-        self.eye
+        self.first.eye
+    }
+}
+
+impl Pose {
+    /// The direction to what a film point shows, of length 1 along the axis of the camera.
+    pub(super) fn toward(&self, film: DVec2) -> DVec3 {
+        let (x, y) = (2.0 * film.x - 1.0, 1.0 - 2.0 * film.y);
+        self.forward + self.half_right * x + self.half_up * y
     }
 
     /// Unit vectors to the right edge of the picture and to its upper edge.

@@ -77,8 +77,8 @@ case \"${{UNDERSTORY_PART:-submit}}\" in
 submit)
     here=$(realpath \"$0\")
     first=$(UNDERSTORY_PART=first sbatch --parsable --export=ALL \"$@\" \"$here\")
-    parts=$(UNDERSTORY_PART=part sbatch --parsable --export=ALL --dependency=\"afterok:${{first%%;*}}\" --array=\"0-$((tasks - 1))\" \"$@\" \"$here\")
-    last=$(UNDERSTORY_PART=last sbatch --parsable --export=ALL --dependency=\"afterany:${{parts%%;*}}\" \"$@\" \"$here\")
+    parts=$(UNDERSTORY_PART=part sbatch --parsable --export=ALL --kill-on-invalid-dep=yes --dependency=\"afterok:${{first%%;*}}\" --array=\"0-$((tasks - 1))\" \"$@\" \"$here\")
+    last=$(UNDERSTORY_PART=last sbatch --parsable --export=ALL --kill-on-invalid-dep=yes --dependency=\"afterany:${{parts%%;*}}\" \"$@\" \"$here\")
     echo \"submitted ${{first%%;*}} (first frame), ${{parts%%;*}} (frames), ${{last%%;*}} (film)\"
     ;;
 first)
@@ -186,6 +186,8 @@ mod tests {
                 && shared.contains("cd '/home/me/my films'")
         );
         assert!(shared.contains("frames=250 tasks=100"));
+        // Where the first frame fails, nothing waits for ever.
+        assert_eq!(shared.matches("--kill-on-invalid-dep=yes --dependency=").count(), 2);
         assert!(!script(&[photon, ("grow", "0..4")]).contains("solution"));
         assert!(!script(&[("orbit", "true")]).contains("solution"));
     }

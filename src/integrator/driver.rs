@@ -8,7 +8,7 @@ use crate::camera::Camera;
 use crate::film::contrast::{self, PixelMask};
 use crate::film::filter::FilterSampler;
 use crate::film::{ErrorEstimate, Film, Filter, Tile};
-use crate::math::rng;
+use crate::math::{Ray, rng};
 use crate::sampler::{Sampler, SamplerKind, Use};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -170,7 +170,7 @@ impl Pass<'_> {
                     return rays;
                 }
                 let mut sampler = self.sampler(x, y, sample);
-                let ray = self.camera.ray(self.film_point(x, y, &sampler));
+                let ray = self.ray(x, y, &sampler);
                 let radiance = self
                     .estimator
                     .incident_radiance(&ray, &mut sampler, &mut rays);
@@ -191,6 +191,16 @@ impl Pass<'_> {
         let half = u64::from(sample % 2);
         let stream = rng::hash(&[self.context.seed, u64::from(x), u64::from(y), half]);
         Sampler::new(self.settings.sampler, stream, sample / 2)
+    }
+
+    /// The ray of one sample of pixel (x, y).
+    fn ray(&self, x: u32, y: u32, sampler: &Sampler) -> Ray {
+        let film = self.film_point(x, y, sampler);
+        let camera = self.camera;
+        if !camera.has_lens() && !camera.moves() {
+            return camera.ray(film);
+        }
+        camera.ray_through(film, sampler.point(Use::Lens), sampler.point(Use::Time).x)
     }
 
     /// The point of the film, in the unit square from the upper left, where this sample of pixel (x, y) falls.

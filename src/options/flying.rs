@@ -46,6 +46,41 @@ impl OptionValue for Metres {
     }
 }
 
+/// How wide a lens is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aperture {
+    /// Its diameter in metres, more than 0.
+    Diameter(f64),
+    /// Its focal length over its diameter, more than 0; the focal length is that of a camera for 35 mm film.
+    FNumber(f64),
+}
+
+impl OptionValue for Aperture {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (number, make): (_, fn(f64) -> Self) = match text.strip_prefix("f/") {
+            Some(number) => (number, Self::FNumber),
+            None => (text, Self::Diameter),
+        };
+        match number.parse::<f64>() {
+            Ok(number) if number > 0.0 && number.is_finite() => Ok(make(number)),
+            _ => Err("a diameter in metres greater than 0, or an f-number such as `f/2.8`".into()),
+        }
+    }
+}
+
+/// Part of the time between two frames in which the shutter is open: 0 (an instant) to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shutter(pub f64);
+
+impl OptionValue for Shutter {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text.parse::<f64>() {
+            Ok(part) if (0.0..=1.0).contains(&part) => Ok(Self(part)),
+            _ => Err("a number from 0 (no blur) to 1 (open from frame to frame)".into()),
+        }
+    }
+}
+
 /// What the files of single frames are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameFormat {
@@ -84,6 +119,13 @@ mod tests {
         assert!(FrameCount::parse("0").is_err() && FrameCount::parse("1000001").is_err());
         assert!(FrameRate::parse("241").is_err() && FrameRate::parse("24").is_ok());
         assert!(Metres::parse("-1").is_err() && Metres::parse("inf").is_err());
+        assert_eq!(Aperture::parse("f/2.8"), Ok(Aperture::FNumber(2.8)));
+        assert_eq!(Aperture::parse("0.1"), Ok(Aperture::Diameter(0.1)));
+        for wrong in ["0", "-1", "f/0", "f/", "inf", "NaN", "f2"] {
+            assert!(Aperture::parse(wrong).is_err(), "{wrong}");
+        }
+        assert_eq!(Shutter::parse("0.5"), Ok(Shutter(0.5)));
+        assert!(Shutter::parse("1.01").is_err() && Shutter::parse("NaN").is_err());
         let why = <KeyFrames as OptionValue>::parse("time=1").unwrap_err();
         assert!(why.contains("one key frame"), "{why}");
     }

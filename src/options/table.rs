@@ -1,6 +1,6 @@
 //! The table of options: one row each.
 
-use super::flying::{FrameCount, FrameFormat, FrameRate, Metres};
+use super::flying::{Aperture, FrameCount, FrameFormat, FrameRate, Metres, Shutter};
 use super::lighting::{Fraction, PlotSize};
 use super::radiosity::{HemicubePixels, SplitDepth, Threshold, Width};
 use super::setting::{Origin, SetError, Setting};
@@ -236,6 +236,10 @@ options! {
     up: DVec3 = "0,0,1", "up", "X,Y,Z", Camera, View, SOLVING;
     /// Vertical field of view in degrees
     fov: Angle = "40", "fov", "DEG", Camera, View, SOLVING;
+    /// Width of the lens, in metres or as `f/N` of a camera for 35 mm film: what is nearer or farther than `focus` is unsharp; `none`: all is sharp
+    aperture: Option<Aperture> = "none", "aperture", "METRES", Camera, View, PICTURING;
+    /// Distance in metres, along the view, of what a lens shows sharp; `auto`: that of `target`
+    focus: Option<Metres> = "auto", "focus", "METRES", Camera, View, PICTURING;
 
     /// Method that computes the light: `path` (path tracing: all light), `photon` (photon mapping: solved once, every view cheap), `radiosity` (what matt surfaces send each other, solved once on the surfaces) or `raytracer` (direct light, mirrors and glass: fast)
     renderer: Renderer = "path", "renderer", "NAME", Render, Solution, SOLVING;
@@ -320,6 +324,8 @@ options! {
     flight_frames: Option<FrameCount> = "auto", "flight-frames", "N", Fly, Flight, &[Fly];
     /// Frames per second of the film
     fps: FrameRate = "25", "fps", "N", Fly, Flight, &[Fly];
+    /// Part of the time between two frames that the shutter is open, 0 to 1: the way of the camera meanwhile is blurred (growth and sun stand still)
+    shutter: Shutter = "0", "shutter", "PART", Fly, Flight, &[Fly];
     /// What single frames in a folder are: `png`, or `exr` with linear radiance
     frame_format: FrameFormat = "png", "frame-format", "NAME", Fly, Flight, &[Fly];
     /// Pairs of neighbouring frames that are rendered again with other random numbers to measure how much the film flickers

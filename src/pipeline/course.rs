@@ -5,7 +5,7 @@ use super::studio::Run;
 use super::viewpoint;
 use crate::animation::route::{self, RouteError};
 use crate::animation::{FilmShape, Flight, KeyFrames, Moment, Speed, SunPlace};
-use crate::camera::{Camera, View};
+use crate::camera::{Camera, CameraError, View};
 use crate::diag::Diagnostic;
 use crate::options::value::Daylight;
 use crate::options::{Options, Origin};
@@ -15,6 +15,9 @@ use std::num::NonZeroU32;
 
 /// Frames of a flight that has no times of its own.
 const USUAL_FRAMES: NonZeroU32 = NonZeroU32::new(120).unwrap();
+/// Straight pieces of the camera's way while the shutter is open. An orbit of 24 frames then is off by a tenth of a thousandth of its
+/// radius.
+const SHUTTER_PIECES: u32 = 8;
 /// What a flight can be, for people.
 const WAYS: &str = "`--orbit` flies once round the model, `--turntable` turns it, `--flyover METRES` and `--walk METRES` cross it, \
                     `--key` or `[[fly.key]]` in the file beside the model flies through key frames, `--grow A..B` lets it grow";
@@ -228,8 +231,7 @@ pub fn cameras(run: &Run, flight: &Flight) -> Result<Vec<(Moment, Camera)>, Fail
     let options = &run.options;
     let made = flight.all().map(|frame| {
         let moment = flight.moment(frame);
-        let camera = Camera::perspective(&moment.view, options.size.value.aspect());
-        let camera = camera.map_err(|error| {
+        let camera = exposed(options, flight, frame).map_err(|error| {
             let seconds = f64::from(frame) / f64::from(options.fps.value.0.get());
             let message = format!("in frame {frame} of the flight ({seconds:.2} s) {error}");
             match options.key.origin {
@@ -243,6 +245,21 @@ pub fn cameras(run: &Run, flight: &Flight) -> Result<Vec<(Moment, Camera)>, Fail
         Ok((moment, camera))
     });
     made.collect()
+}
+
+/// The camera of one frame, which moves while the shutter is open.
+fn exposed(options: &Options, flight: &Flight, frame: u32) -> Result<Camera, CameraError> {
+    let camera_of = |view: &View| viewpoint::through_lens(options, view);
+    let camera = camera_of(&flight.view(frame))?;
+    let shutter = options.shutter.value.0;
+    if shutter == 0.0 {
+        return Ok(camera);
+    }
+    let later: Result<Vec<Camera>, CameraError> = (1..=SHUTTER_PIECES)
+        .map(|i| f64::from(i) / f64::from(SHUTTER_PIECES) * shutter)
+        .map(|part| camera_of(&flight.view_after(frame, part)))
+        .collect();
+    Ok(camera.moving_through(&later?))
 }
 
 /// The view that the options alone decide, if no scene is needed for it.

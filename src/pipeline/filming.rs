@@ -198,6 +198,12 @@ impl<'a, 'w> Shooting<'a, 'w> {
                 .with(&panorama.to_string())
                 .with(&leader)
                 .with(&format!("{moment:?}"));
+            // How far a camera moves while the shutter is open, the moment does not tell.
+            let key = if camera.moves() {
+                key.with(&format!("{camera:?}"))
+            } else {
+                key
+            };
             jobs.push(Job {
                 frame,
                 moment,

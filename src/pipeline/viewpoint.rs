@@ -3,9 +3,10 @@
 use super::failure::Failure;
 use super::sources::Sources;
 use crate::camera::framing::{self, Subject};
-use crate::camera::{Camera, CameraError, View};
+use crate::camera::{Camera, CameraError, Lens, View, lens};
 use crate::diag::Diagnostic;
 use crate::math::Bounds3;
+use crate::options::flying::Aperture;
 use crate::options::{Options, Origin};
 use crate::scene::Scene;
 use glam::DVec3;
@@ -73,8 +74,26 @@ fn view(options: &Options, subject: &Subject<'_>) -> View {
 /// # Errors
 /// If the view is impossible: an error in the file beside the model if that said so, a usage error otherwise.
 pub fn camera(sources: &Sources, options: &Options, view: &View) -> Result<Camera, Failure> {
-    Camera::perspective(view, options.size.value.aspect())
-        .map_err(|error| blame(sources, options, &error))
+    through_lens(options, view).map_err(|error| blame(sources, options, &error))
+}
+
+/// The camera of a view, with the lens that the options ask for.
+///
+/// # Errors
+/// If the view is impossible.
+pub(super) fn through_lens(options: &Options, view: &View) -> Result<Camera, CameraError> {
+    let camera = Camera::perspective(view, options.size.value.aspect())?;
+    let Some(aperture) = options.aperture.value else {
+        return Ok(camera);
+    };
+    let focus = options.focus.value.map(|metres| metres.0);
+    Ok(camera.with_lens(Lens {
+        diameter: match aperture {
+            Aperture::Diameter(diameter) => diameter,
+            Aperture::FNumber(number) => lens::diameter(number, view.fov.half()),
+        },
+        focus: focus.unwrap_or(view.eye.distance(view.target)),
+    }))
 }
 
 /// Refuses an impossible camera before the model is grown, if the options alone decide it.

@@ -35,6 +35,10 @@ pub enum Use {
     Passage(u16),
     /// Which part of the surface scatters (x), and whether it reflects or refracts (y).
     Lobe,
+    /// Position on the lens (vertex 0).
+    Lens,
+    /// When the shutter is passed (x; vertex 0).
+    Time,
 }
 
 impl Use {
@@ -46,11 +50,13 @@ impl Use {
             Self::Light(nth) => 2 + 2 * nth as u32,
             Self::Passage(nth) => 3 + 2 * nth as u32,
             Self::Lobe => 2 + 2 * (1 << 16),
+            Self::Lens => 3 + 2 * (1 << 16),
+            Self::Time => 4 + 2 * (1 << 16),
         }
     }
 }
 
-/// Pads per vertex: three fixed uses and two counted ones of 65,536 each, rounded up.
+/// Pads per vertex: five fixed uses and two counted ones of 65,536 each, rounded up.
 const PADS_PER_VERTEX: u64 = 1 << 18;
 
 /// The points of one sample.
@@ -201,10 +207,16 @@ mod tests {
     fn no_two_uses_share_a_pad() {
         let counted = (0..=u16::MAX).flat_map(|k| [Use::Light(k), Use::Passage(k)]);
         let pads: BTreeSet<u32> = counted
-            .chain([Use::Direction, Use::Choice, Use::Lobe])
+            .chain([
+                Use::Direction,
+                Use::Choice,
+                Use::Lobe,
+                Use::Lens,
+                Use::Time,
+            ])
             .map(Use::pad)
             .collect();
-        assert_eq!(pads.len(), 3 + 2 * 65_536);
+        assert_eq!(pads.len(), 5 + 2 * 65_536);
         assert!(pads.iter().all(|pad| u64::from(*pad) < PADS_PER_VERTEX));
     }
 }
