@@ -338,7 +338,10 @@ fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
         assert!(there >= before, "a frame is lost");
         before = there;
         if bench.path("killed.mp4").exists() {
-            assert!(bench.bytes("killed.mp4") == bench.bytes("whole.mp4"), "kill {kill}");
+            assert!(
+                bench.bytes("killed.mp4") == bench.bytes("whole.mp4"),
+                "kill {kill}"
+            );
             // Once more from the beginning: a finished film cannot be broken off.
             fs::remove_file(bench.path("killed.mp4")).unwrap();
             fs::remove_dir_all(bench.path("killed.mp4.frames")).unwrap();
@@ -359,7 +362,10 @@ fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
 fn films_play_in_a_browser() {
     let bench = Bench::new();
     // A ball that fills the middle while the sun goes round it: each frame has a color of its own there.
-    bench.write("b.rgg", "protected void init() [ Axiom ==> Sphere(1).(setShader(RED)); ]\n");
+    bench.write(
+        "b.rgg",
+        "protected void init() [ Axiom ==> Sphere(1).(setShader(RED)); ]\n",
+    );
     let fly = "fly b.rgg --key time=0_eye=0,-3,0_target=0,0,0_sun=180,60;time=2_sun=20,2 --fps 6 --size 160x120 --samples 4 --flicker 0";
     for film in ["a.mp4", "a.gif", "a.png", "a.webp"] {
         bench.succeed(&format!("{fly} -o {film}"));
@@ -440,10 +446,14 @@ fn lens_and_shutter_blur_and_without_them_nothing_changes() {
     // The blur of a frame is part of what it is made from, though its moment is the same in a slower film.
     bench.succeed(&format!("{fly} --shutter 0.5"));
     let slower = fly.replace("--flight-frames 8", "--flight-frames 16");
-    let told = bench.succeed(&format!("{slower} --frames 0..1 --shutter 0.5").replace(" --frames 0..2", ""));
+    let told = bench
+        .succeed(&format!("{slower} --frames 0..1 --shutter 0.5").replace(" --frames 0..2", ""));
     assert!(told.contains("1 frames made ("), "{told}");
     // A camera that stands still is sharp with an open shutter.
-    let still = fly.replace("--orbit --flight-frames 8", "--key time=0_eye=2,-4,1;time=1");
+    let still = fly.replace(
+        "--orbit --flight-frames 8",
+        "--key time=0_eye=2,-4,1;time=1",
+    );
     bench.succeed(&still);
     let closed = pixels(&bench.bytes(&frame("f", 1)));
     bench.succeed(&format!("{still} --shutter 1 --seed 1"));

@@ -6,6 +6,7 @@
 use super::perspective::{Camera, Pose};
 use crate::math::{Ray, warp};
 use glam::{DVec2, DVec3};
+use std::fmt::Debug;
 
 /// Height of the picture of the camera that f-numbers are meant for, in metres: 24 mm, 35 mm film.
 const FILM_HEIGHT: f64 = 0.024;
@@ -60,6 +61,11 @@ impl Camera {
     /// Whether it moves while the shutter is open.
     pub fn moves(&self) -> bool {
         !self.later.is_empty()
+    }
+
+    /// Its way while the shutter is open, in a form that is equal for equal ways: no moment tells how far it moves.
+    pub fn motion(&self) -> &impl Debug {
+        &self.later
     }
 
     /// The ray through a film point and a point of the lens at a moment: `film` as for [`ray`](Self::ray), `lens` in the unit square,
@@ -135,7 +141,10 @@ mod tests {
                     .map(|lens| on_plane(&camera.ray_through(film, lens, 0.0), z).distance(middle));
                 let widest = 2.0 * radii.fold(0.0, f64::max);
                 let expected = diameter * (z - focus).abs() / focus;
-                assert!((widest - expected).abs() < 1e-12, "{z}: {widest} {expected}");
+                assert!(
+                    (widest - expected).abs() < 1e-12,
+                    "{z}: {widest} {expected}"
+                );
             }
         }
     }
@@ -143,12 +152,17 @@ mod tests {
     #[test]
     fn a_blur_is_as_long_as_the_way_of_the_camera() {
         // 2 m to the right, seen at 5 m where the picture is 15 m wide: things move by 2/15 of it to the left.
-        let moving = camera(0.0).moving_through(&[camera(0.5), camera(1.0), camera(1.5), camera(2.0)]);
+        let moving =
+            camera(0.0).moving_through(&[camera(0.5), camera(1.0), camera(1.5), camera(2.0)]);
         let film = DVec2::splat(0.5);
         let at = |time: f64| on_plane(&moving.ray_through(film, film, time), 5.0).x;
         for i in 0..=16 {
             let time = f64::from(i) / 16.0;
-            assert!((at(time) - 2.0 * time).abs() < 1e-12, "{time}: {}", at(time));
+            assert!(
+                (at(time) - 2.0 * time).abs() < 1e-12,
+                "{time}: {}",
+                at(time)
+            );
         }
     }
 

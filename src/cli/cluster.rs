@@ -187,7 +187,12 @@ mod tests {
         );
         assert!(shared.contains("frames=250 tasks=100"));
         // Where the first frame fails, nothing waits for ever.
-        assert_eq!(shared.matches("--kill-on-invalid-dep=yes --dependency=").count(), 2);
+        assert_eq!(
+            shared
+                .matches("--kill-on-invalid-dep=yes --dependency=")
+                .count(),
+            2
+        );
         assert!(!script(&[photon, ("grow", "0..4")]).contains("solution"));
         assert!(!script(&[("orbit", "true")]).contains("solution"));
     }

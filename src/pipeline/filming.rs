@@ -197,13 +197,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
                 .picture_key()
                 .with(&panorama.to_string())
                 .with(&leader)
-                .with(&format!("{moment:?}"));
-            // How far a camera moves while the shutter is open, the moment does not tell.
-            let key = if camera.moves() {
-                key.with(&format!("{camera:?}"))
-            } else {
-                key
-            };
+                .with(&format!("{moment:?} {:?}", camera.motion()));
             jobs.push(Job {
                 frame,
                 moment,

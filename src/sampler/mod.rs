@@ -207,13 +207,7 @@ mod tests {
     fn no_two_uses_share_a_pad() {
         let counted = (0..=u16::MAX).flat_map(|k| [Use::Light(k), Use::Passage(k)]);
         let pads: BTreeSet<u32> = counted
-            .chain([
-                Use::Direction,
-                Use::Choice,
-                Use::Lobe,
-                Use::Lens,
-                Use::Time,
-            ])
+            .chain([Use::Direction, Use::Choice, Use::Lobe, Use::Lens, Use::Time])
             .map(Use::pad)
             .collect();
         assert_eq!(pads.len(), 5 + 2 * 65_536);
