@@ -111,6 +111,11 @@ impl Camera {
     pub fn eye(&self) -> DVec3 {
         self.first.eye
     }
+
+    /// Unit vectors to the right edge of the picture and to its upper edge.
+    pub fn axes(&self) -> [DVec3; 2] {
+        [self.first.half_right, self.first.half_up].map(DVec3::normalize)
+    }
 }
 
 impl Pose {
@@ -118,11 +123,6 @@ impl Pose {
     pub(super) fn toward(&self, film: DVec2) -> DVec3 {
         let (x, y) = (2.0 * film.x - 1.0, 1.0 - 2.0 * film.y);
         self.forward + self.half_right * x + self.half_up * y
-    }
-
-    /// Unit vectors to the right edge of the picture and to its upper edge.
-    pub fn axes(&self) -> [DVec3; 2] {
-        [self.half_right, self.half_up].map(DVec3::normalize)
     }
 }
 
