@@ -136,10 +136,10 @@ pub struct DeriveArgs {
 /// Files with the light that all cameras share.
 #[derive(Debug, Args)]
 pub struct SolutionArgs {
-    /// Take the light of photon mapping from this file instead of solving it; refused if it is of anything else than this model
+    /// Take the light of photon mapping or radiosity from this file instead of solving it; refused if it is of anything else than this model
     #[arg(long, value_name = "FILE")]
     pub solution: Option<PathBuf>,
-    /// Write the light of photon mapping into this file, for other cameras
+    /// Write the light of photon mapping or radiosity into this file, for other cameras
     #[arg(long, value_name = "FILE")]
     pub save_solution: Option<PathBuf>,
 }

@@ -200,8 +200,8 @@ impl PaintedMesh {
             let axes = [camera.right, camera.up, camera.right.cross(camera.up)];
             let [right, up, back] = axes.map(y_up);
             let place = DAffine3 {
-                matrix3: DMat3::from_cols(right, up, back).into(),
-                translation: y_up(camera.eye).into(),
+                matrix3: DMat3::from_cols(right, up, back),
+                translation: y_up(camera.eye),
             };
             let (_, turn, eye) = place.to_scale_rotation_translation();
             let (turn, eye) = (turn.normalize().to_array(), eye.to_array());

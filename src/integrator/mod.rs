@@ -11,6 +11,7 @@
 //! same [`sampler`](crate::sampler), so that a fix is made once.
 
 mod carrier;
+mod bytes;
 mod clear_shadow;
 mod context;
 pub mod driver;

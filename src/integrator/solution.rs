@@ -25,8 +25,9 @@ impl Solution {
     #[must_use]
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         match self {
-            Self::Nothing | Self::Radiosity(_) => None,
+            Self::Nothing => None,
             Self::Photons(photons) => Some(photons.to_bytes()),
+            Self::Radiosity(radiosity) => Some(radiosity.to_bytes()),
         }
     }
 

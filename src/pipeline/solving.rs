@@ -32,16 +32,15 @@ impl SolutionFiles {
     /// If it has not.
     pub fn check(&self, options: &Options) -> Result<(), Failure> {
         let has_solution = match options.renderer.value {
-            // What radiosity finds is not written to files, only kept from picture to picture.
-            Renderer::Path | Renderer::Raytracer | Renderer::Radiosity => false,
-            Renderer::Photon => true,
+            Renderer::Path | Renderer::Raytracer => false,
+            Renderer::Photon | Renderer::Radiosity => true,
         };
         if has_solution || (self.read.is_none() && self.save.is_none()) {
             return Ok(());
         }
         Err(Failure::Usage(
-            "`--solution` and `--save-solution` are for solutions that can be written to files: those of \
-             `--renderer photon`"
+            "`--solution` and `--save-solution` are for light that is solved once for all cameras: that of \
+             `--renderer photon` and `--renderer radiosity`"
                 .into(),
         ))
     }

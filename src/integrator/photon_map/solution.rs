@@ -2,18 +2,17 @@
 //!
 //! Little-endian numbers, one after the other: photons emitted and stored, then each map as its middle, its size of pieces, its layers
 //! of samples, its pieces and its places. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
-//! its surroundings), of which there are fewer than photons. Whoever reads trusts nothing: counts are compared with the bytes that are
-//! left before memory is asked for, and numbers that no solution has are refused.
+//! its surroundings), of which there are fewer than photons. Numbers that no solution has are refused.
 
 use super::estimate::Hidden;
 use super::final_gather::FinalGather;
 use super::irradiance::{IrradianceMap, Layer, Sample};
 use super::pieces::PieceLight;
 use super::stored::PackedNormal;
-use crate::color::Rgb;
 use crate::integrator::Unreadable;
+use crate::integrator::bytes::{Reader, put};
 use crate::math::PrimitiveId;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
 /// Bytes of a sample from which nothing is hidden.
@@ -68,9 +67,7 @@ impl PhotonSolution {
         let mut reader = Reader(bytes);
         let (emitted, stored) = (reader.u64()?, reader.u64()?);
         let (global, caustic) = (reader.perhaps_map()?, reader.perhaps_map()?);
-        if !reader.0.is_empty() {
-            return Err(Unreadable("more follows after its end"));
-        }
+        reader.end()?;
         Ok(Self {
             global,
             caustic,
@@ -79,10 +76,6 @@ impl PhotonSolution {
             gather: OnceLock::new(),
         })
     }
-}
-
-fn put<const N: usize>(out: &mut Vec<u8>, bytes: [u8; N]) {
-    out.extend_from_slice(&bytes);
 }
 
 fn put_map(out: &mut Vec<u8>, map: &IrradianceMap) {
@@ -126,68 +119,7 @@ fn put_sample(out: &mut Vec<u8>, sample: &Sample) {
     }
 }
 
-/// What is left to read.
-struct Reader<'b>(&'b [u8]);
-
 impl Reader<'_> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], Unreadable> {
-        let (taken, rest) = self
-            .0
-            .split_first_chunk::<N>()
-            .ok_or(Unreadable("it ends too early"))?;
-        self.0 = rest;
-        Ok(*taken)
-    }
-
-    fn u64(&mut self) -> Result<u64, Unreadable> {
-        Ok(u64::from_le_bytes(self.take()?))
-    }
-
-    fn flag(&mut self) -> Result<bool, Unreadable> {
-        match self.take()? {
-            [0] => Ok(false),
-            [1] => Ok(true),
-            _ => Err(Unreadable("a switch is neither off nor on")),
-        }
-    }
-
-    fn f64(&mut self) -> Result<f64, Unreadable> {
-        let number = f64::from_le_bytes(self.take()?);
-        finite(number.is_finite())?;
-        Ok(number)
-    }
-
-    fn f32(&mut self) -> Result<f32, Unreadable> {
-        let number = f32::from_le_bytes(self.take()?);
-        finite(number.is_finite())?;
-        Ok(number)
-    }
-
-    /// A length, m: more than 0.
-    fn length(&mut self) -> Result<f64, Unreadable> {
-        let length = self.f64()?;
-        if length > 0.0 {
-            Ok(length)
-        } else {
-            Err(Unreadable("a length is not positive"))
-        }
-    }
-
-    fn vec3(&mut self) -> Result<Vec3, Unreadable> {
-        Ok(Vec3::new(self.f32()?, self.f32()?, self.f32()?))
-    }
-
-    /// How many things of at least `size` bytes follow: no more than there are bytes for.
-    fn count(&mut self, size: usize) -> Result<usize, Unreadable> {
-        let n = self.u64()?;
-        let fits = n <= (self.0.len() / size) as u64 && n < u64::from(u32::MAX);
-        if fits {
-            Ok(n as usize)
-        } else {
-            Err(Unreadable("it ends too early"))
-        }
-    }
-
     fn perhaps_map(&mut self) -> Result<Option<IrradianceMap>, Unreadable> {
         self.flag()?.then(|| self.map()).transpose()
     }
@@ -195,7 +127,7 @@ impl Reader<'_> {
     fn map(&mut self) -> Result<IrradianceMap, Unreadable> {
         let center = DVec3::new(self.f64()?, self.f64()?, self.f64()?);
         let radius = self.length()?;
-        let n_layers = u32::from_le_bytes(self.take()?);
+        let n_layers = self.u32()?;
         if n_layers > MOST_LAYERS {
             return Err(Unreadable("it has too many layers"));
         }
@@ -251,18 +183,7 @@ impl Reader<'_> {
 
     fn piece(&mut self) -> Result<PieceLight, Unreadable> {
         let key = (PrimitiveId(self.u64()?), self.flag()?);
-        let irradiance = Rgb::new(self.f64()?, self.f64()?, self.f64()?);
-        if irradiance.to_array().iter().any(|c| *c < 0.0) {
-            return Err(Unreadable("a piece has negative light"));
-        }
+        let irradiance = self.light()?;
         Ok(PieceLight { key, irradiance })
-    }
-}
-
-fn finite(is_finite: bool) -> Result<(), Unreadable> {
-    if is_finite {
-        Ok(())
-    } else {
-        Err(Unreadable("a number is not finite"))
     }
 }

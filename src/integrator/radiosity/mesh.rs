@@ -39,6 +39,19 @@ pub(super) struct Cell {
     pub(super) size: DVec2,
 }
 
+impl Cell {
+    /// The `k`-th cell of a face that is cut into so many along each coordinate.
+    pub(super) fn of_grid(chart: u32, n: [u32; 2], k: u32) -> Self {
+        let size = DVec2::new(1.0 / f64::from(n[0]), 1.0 / f64::from(n[1]));
+        let step = DVec2::new(f64::from(k % n[0]), f64::from(k / n[0]));
+        Self {
+            chart,
+            origin: step * size,
+            size,
+        }
+    }
+}
+
 /// A cell and what became of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
@@ -52,17 +65,17 @@ pub(super) struct Node {
 }
 
 /// The first trees of a face: a grid.
-#[derive(Clone, Copy, Debug)]
-struct Grid {
-    first: u32,
-    n: [u32; 2],
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    pub(super) first: u32,
+    pub(super) n: [u32; 2],
 }
 
 /// All cells of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Mesh {
     pub(super) charts: Vec<PlacedChart>,
-    grids: Vec<Grid>,
+    pub(super) grids: Vec<Grid>,
     pub(super) nodes: Vec<Node>,
     /// The node that each patch is.
     pub(super) patches: Vec<u32>,
@@ -82,22 +95,8 @@ impl Mesh {
     /// # Errors
     /// The number of patches that there would be at least.
     pub(super) fn new(scene: &Scene, most: u64) -> Result<Self, u64> {
-        let bounds = scene.bounds();
-        let (center, radius) = if bounds.is_empty() {
-            (DVec3::ZERO, 0.0)
-        } else {
-            (bounds.center(), 0.5 * bounds.diagonal().length())
-        };
-        let lamps = scene.lights().iter().filter_map(|light| match light {
-            Light::Point { position, .. } | Light::Spot { position, .. } => Some(*position),
-            Light::Directional { .. } => None,
-        });
-        let lamp = lamps.map(|lamp| lamp.distance(center)).fold(0.0, f64::max);
-        let reach = match PLANE_REACH * radius.max(lamp) {
-            reach if reach > 0.0 => reach,
-            _ => 1.0,
-        };
-        let charts = scene.charts(most, center, reach)?;
+        let Extent { radius, lamp, .. } = Extent::of(scene);
+        let charts = faces(scene, most)?;
         let mut width = 2.0 * radius / PATCHES_ACROSS;
         for _ in 0..ATTEMPTS {
             let cutting = Cutting {
@@ -228,7 +227,7 @@ fn child_at(within: DVec2, is_triangle: bool) -> u32 {
 }
 
 /// The four parts of a cell.
-fn parts(cell: &Cell, is_triangle: bool) -> [Cell; 4] {
+pub(super) fn parts(cell: &Cell, is_triangle: bool) -> [Cell; 4] {
     let half = cell.size * 0.5;
     let part = |x: f64, y: f64| Cell {
         chart: cell.chart,
@@ -250,6 +249,52 @@ fn parts(cell: &Cell, is_triangle: bool) -> [Cell; 4] {
             part(0.0, 1.0),
             part(1.0, 1.0),
         ]
+    }
+}
+
+/// All faces of a scene.
+///
+/// # Errors
+/// Their number if that is more than `most`.
+pub(super) fn faces(scene: &Scene, most: u64) -> Result<Vec<PlacedChart>, u64> {
+    let extent = Extent::of(scene);
+    scene.charts(most, extent.center, extent.reach)
+}
+
+/// Where a scene is and how far planes are cut, metres.
+struct Extent {
+    center: DVec3,
+    /// Half the diagonal of what is bounded.
+    radius: f64,
+    /// Distance of the farthest lamp from the middle.
+    lamp: f64,
+    /// How far planes are cut.
+    reach: f64,
+}
+
+impl Extent {
+    fn of(scene: &Scene) -> Self {
+        let bounds = scene.bounds();
+        let (center, radius) = if bounds.is_empty() {
+            (DVec3::ZERO, 0.0)
+        } else {
+            (bounds.center(), 0.5 * bounds.diagonal().length())
+        };
+        let lamps = scene.lights().iter().filter_map(|light| match light {
+            Light::Point { position, .. } | Light::Spot { position, .. } => Some(*position),
+            Light::Directional { .. } => None,
+        });
+        let lamp = lamps.map(|lamp| lamp.distance(center)).fold(0.0, f64::max);
+        let reach = match PLANE_REACH * radius.max(lamp) {
+            reach if reach > 0.0 => reach,
+            _ => 1.0,
+        };
+        Self {
+            center,
+            radius,
+            lamp,
+            reach,
+        }
     }
 }
 
@@ -275,15 +320,8 @@ impl Cutting<'_> {
             let n = self.grid(&placed);
             let first = mesh.nodes.len() as u32;
             mesh.grids.push(Grid { first, n });
-            let size = DVec2::new(1.0 / f64::from(n[0]), 1.0 / f64::from(n[1]));
             for k in 0..n[0] * n[1] {
-                let step = DVec2::new(f64::from(k % n[0]), f64::from(k / n[0]));
-                let cell = Cell {
-                    chart: at as u32,
-                    origin: step * size,
-                    size,
-                };
-                mesh.push(cell, NONE);
+                mesh.push(Cell::of_grid(at as u32, n, k), NONE);
             }
             // Nodes are split until they are patches; those of the tree so far and those that come of it.
             let mut node = first as usize;

@@ -17,6 +17,7 @@
 //! source    what light sources give      stochastic  all patches at once, nothing stored
 //! view      from the camera              rays        form factors by rays
 //! polygon   between polygons, on paper   hemicube    drawn onto half a cube
+//! kept      as bytes
 //! painted   as a mesh with colours        analytic    on paper where that holds
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
@@ -24,6 +25,7 @@
 mod analytic;
 mod gather;
 mod hemicube;
+mod kept;
 mod mesh;
 mod painted;
 mod polygon;
@@ -54,8 +56,8 @@ use rayon::prelude::*;
 use rays::CosineRays;
 use refine::Refinement;
 use source::{Lighting, has_stray_light};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use system::{FormFactors, Patch, Row, Solved};
 use vertices::Vertices;
 use view::View;
@@ -172,11 +174,16 @@ impl Integrator for Radiosity {
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         match solution {
-            super::Solution::Radiosity(solution) => {
+            super::Solution::Radiosity(solution) if solution.fits(scene) => {
                 Ok(Box::new(self.look(scene, solution.clone())))
             }
-            super::Solution::Nothing | super::Solution::Photons(_) => self.prepare(scene, context),
+            _ => self.prepare(scene, context),
         }
+    }
+
+    fn restore(&self, bytes: &[u8]) -> Result<super::Solution, super::Unreadable> {
+        let solution = RadiositySolution::from_bytes(bytes)?;
+        Ok(super::Solution::Radiosity(Arc::new(solution)))
     }
 }
 
@@ -185,6 +192,8 @@ impl Integrator for Radiosity {
 pub struct RadiositySolution {
     mesh: Mesh,
     vertices: Vertices,
+    /// Whether its faces are those of the scene, once somebody has seen to that.
+    fits: OnceLock<bool>,
     /// Patches into which surfaces are cut.
     pub patches: u64,
     /// Part of all light that was still to be sent when the solver ended.
@@ -237,6 +246,7 @@ impl Radiosity {
             patches: mesh.patches.len() as u64,
             residual: sent.solved.residual,
             is_converged: sent.solved.is_converged,
+            fits: OnceLock::from(true),
             mesh,
         })
     }

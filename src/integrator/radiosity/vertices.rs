@@ -27,9 +27,9 @@ struct Vertex {
 #[derive(Debug)]
 pub(super) struct Vertices {
     /// Of each node, the vertices at its corners; of elements only.
-    corners: Vec<[u32; 4]>,
+    pub(super) corners: Vec<[u32; 4]>,
     /// Front and back.
-    values: Vec<[Rgb; 2]>,
+    pub(super) values: Vec<[Rgb; 2]>,
 }
 
 /// Corners by place.
