@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench watch` measures models of about 1,000, 100,000 and 6 million modules: from saving to the first picture
 //! fetched and to the diagnostics, from a move of the camera to its picture, and how soon each stage stops when its work has
-//! become useless. `cargo bench --bench watch -- saves 10000` saves a small model so often and prints the memory on the way.
+//! become useless; at the end all of it once more as the table of the README. `cargo bench --bench watch -- saves 10000` saves a small model so often and prints the memory on the way.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 #![allow(clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
@@ -122,11 +122,49 @@ fn median(mut times: Vec<Duration>) -> Duration {
     times[times.len() / 2]
 }
 
+/// What was measured of one model, in milliseconds, by the name of its row.
+#[derive(Default)]
+struct Column {
+    rows: Vec<(String, f64)>,
+}
+
+impl Column {
+    /// Prints a figure and keeps it for the table.
+    fn tell(&mut self, row: &str, milliseconds: f64) {
+        println!("  {row:<32} {milliseconds:>8.1} ms");
+        self.rows.push((row.to_owned(), milliseconds));
+    }
+}
+
+/// Prints all columns as a table of Markdown; a row that a column lacks stays empty there.
+fn table(columns: &[(&str, Column)]) {
+    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+    println!("\n| `cargo bench --bench watch` | {} |", names.join(" | "));
+    println!("|---|{}", "---|".repeat(columns.len()));
+    let mut rows: Vec<&str> = vec![];
+    for (row, _) in columns.iter().flat_map(|(_, column)| &column.rows) {
+        if !rows.contains(&row.as_str()) {
+            rows.push(row);
+        }
+    }
+    for row in rows {
+        let cells = columns.iter().map(|(_, column)| {
+            let figure = column.rows.iter().find(|(name, _)| name == row);
+            figure.map_or(String::new(), |(_, ms)| match *ms {
+                ms if ms < 10.0 => format!("{ms:.1} ms"),
+                ms if ms < 1000.0 => format!("{ms:.0} ms"),
+                ms => format!("{:.2} s", ms / 1000.0),
+            })
+        });
+        println!("| {row} | {} |", cells.collect::<Vec<_>>().join(" | "));
+    }
+}
+
 /// A picture that is done in a moment, so that what is measured begins at rest.
 const QUICK: &[&str] = &["--samples", "1", "--renderer", "raytracer"];
 
 /// From a save to its first picture: with the time that growing, drawing and building took of it.
-fn saving(steps: u32, repeats: u32) {
+fn saving(column: &mut Column, steps: u32, repeats: u32) {
     let mut session = Session::start(steps, QUICK);
     let mut last = session.rest();
     let (mut times, mut stages) = (Vec::new(), 0.0);
@@ -146,11 +184,8 @@ fn saving(steps: u32, repeats: u32) {
         stages = phase("read") + phase("derive") + phase("scene") + phase("accel");
     }
     let first = median(times);
-    println!(
-        "  save to first picture    {:>8.1} ms, of which {:.1} ms growing and building the last time",
-        1e3 * first.as_secs_f64(),
-        1e3 * stages
-    );
+    column.tell("save to first picture", 1e3 * first.as_secs_f64());
+    column.tell("of which growing and building", 1e3 * stages);
 
     let mut times = Vec::new();
     for n in 0..REPEATS {
@@ -167,11 +202,11 @@ fn saving(steps: u32, repeats: u32) {
         times.push(start.elapsed());
     }
     let time = 1e3 * median(times).as_secs_f64();
-    println!("  save to diagnostics      {time:>8.1} ms");
+    column.tell("save to diagnostics", time);
 }
 
 /// From a move of the camera to its picture.
-fn dragging(steps: u32) {
+fn dragging(column: &mut Column, steps: u32) {
     let mut session = Session::start(steps, &["--quality", "draft"]);
     let mut last = session.rest();
     let mut times = Vec::new();
@@ -188,11 +223,11 @@ fn dragging(steps: u32) {
         std::thread::sleep(Duration::from_millis(100));
     }
     let time = 1e3 * median(times).as_secs_f64();
-    println!("  drag to picture          {time:>8.1} ms");
+    column.tell("drag to picture", time);
 }
 
 /// How soon each stage stops once a wish makes its work useless.
-fn cancelling(steps: u32, stages: &[&str]) {
+fn cancelling(column: &mut Column, steps: u32, stages: &[&str]) {
     let photons = ["--renderer", "photon", "--global-photons", "3000000"];
     let mut session = Session::start(steps, &photons);
     let told = |session: &mut Session, stage: &str| {
@@ -215,7 +250,7 @@ fn cancelling(steps: u32, stages: &[&str]) {
             .events
             .until("work on it", |state| state["is_queued"] == false);
         let time = 1e3 * start.elapsed().as_secs_f64();
-        println!("  {stage:<20} stops in {time:>7.1} ms");
+        column.tell(&format!("{stage} stops"), time);
     }
 }
 
@@ -258,17 +293,19 @@ fn main() {
         println!("memory of a session");
         return saves(count.parse().unwrap());
     }
+    let mut columns = vec![];
     for (name, steps, repeats) in [
-        ("about 1,000 modules", 7, REPEATS),
-        ("about 100,000 modules", 14, REPEATS),
-        ("about 6 million modules", 20, 1),
+        ("1,000 modules", 7, REPEATS),
+        ("100,000 modules", 14, REPEATS),
+        ("6 million modules", 20, 1),
     ] {
         if words.first().is_some_and(|word| !name.contains(word)) {
             continue;
         }
         println!("{name}");
-        saving(steps, repeats);
-        dragging(steps);
+        let mut column = Column::default();
+        saving(&mut column, steps, repeats);
+        dragging(&mut column, steps);
         let all = [
             "rendering",
             "preparing",
@@ -281,6 +318,8 @@ fn main() {
             20 => &all[..],
             _ => &all[..2],
         };
-        cancelling(steps, stages);
+        cancelling(&mut column, steps, stages);
+        columns.push((name, column));
     }
+    table(&columns);
 }

@@ -7,6 +7,7 @@
 #![cfg(unix)]
 
 #[path = "support/browser.rs"]
+#[allow(dead_code, reason = "each test that uses a browser uses a part of it")]
 mod browser;
 
 use browser::{Browser, Shot};

@@ -465,3 +465,218 @@ fn once_makes_one_picture_and_ends() {
     assert!(folder.path().join("m.png").exists());
     assert_eq!(run("void init() [ Axiom ==> ").status.code(), Some(1));
 }
+
+#[test]
+fn every_editor_has_its_way_of_saving() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::create_dir(at("far")).unwrap();
+    fs::write(at("far/model.rgg"), ball("1")).unwrap();
+    // A link into a folder from which no events come: a look once a second finds what they miss.
+    std::os::unix::fs::symlink("far/model.rgg", at("m.rgg")).unwrap();
+    let watch = Watch::inside(folder, &["--port", "0", "--steps", "0", "--size", "24x16"]);
+    let visitor = watch.visitor();
+    let mut events = visitor.events();
+    events.whole("a first picture", |_| true);
+    let path = |name: &str| watch.path(name);
+    type Save = fn(&dyn Fn(&str) -> PathBuf, &str);
+    let styles: [(&str, Save); 6] = [
+        ("behind a link", |at, text| {
+            fs::write(at("far/model.rgg"), text).unwrap();
+        }),
+        ("emacs: a copy aside, then in place", |at, text| {
+            fs::copy(at("m.rgg"), at("m.rgg~")).unwrap();
+            fs::write(at("m.rgg"), text).unwrap();
+        }),
+        (
+            "vim: moved aside, made anew, the old one removed",
+            |at, text| {
+                fs::rename(at("m.rgg"), at("m.rgg~")).unwrap();
+                fs::write(at("m.rgg"), text).unwrap();
+                fs::remove_file(at("m.rgg~")).unwrap();
+            },
+        ),
+        (
+            "gedit, VS Code's atomic way: a new file over the old one",
+            |at, text| {
+                fs::write(at(".m.rgg.tmp"), text).unwrap();
+                fs::rename(at(".m.rgg.tmp"), at("m.rgg")).unwrap();
+            },
+        ),
+        ("removed, and made again a moment later", |at, text| {
+            fs::remove_file(at("m.rgg")).unwrap();
+            std::thread::sleep(Duration::from_millis(60));
+            fs::write(at("m.rgg"), text).unwrap();
+        }),
+        ("in pieces", |at, text| {
+            use std::io::Write;
+            let mut file = fs::File::create(at("m.rgg")).unwrap();
+            for piece in text.as_bytes().chunks(20) {
+                file.write_all(piece).unwrap();
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        }),
+    ];
+    for (number, (name, save)) in styles.iter().enumerate() {
+        let radius = format!("1.{}", number + 1);
+        save(&path, &ball(&radius));
+        let saved = events.whole(name, |state| {
+            state["round"].as_u64() > Some(1 + number as u64)
+        });
+        // What counts is what is seen: the picture of this radius.
+        assert!(
+            saved["problems"] == serde_json::json!([]),
+            "{name}: {saved}"
+        );
+        let out = Command::new(env!("CARGO_BIN_EXE_understory"))
+            .current_dir(watch.folder.path())
+            .args(["render", "m.rgg", "-o", "r.png", "--steps", "0"])
+            .args(["--size", "24x16", "--samples", "2"])
+            .output()
+            .unwrap();
+        assert!(out.status.success(), "{out:?}");
+        let made = fs::read(watch.path("r.png")).unwrap();
+        fs::remove_file(watch.path("r.png")).unwrap();
+        let mut shown = visitor.get("/picture.png").body;
+        // A save in pieces may have been seen in the midst of it.
+        while shown != made {
+            events
+                .next()
+                .unwrap_or_else(|| panic!("{name}: not the last text"));
+            shown = visitor.get("/picture.png").body;
+        }
+    }
+    // Touched, not changed: nothing is done.
+    let before = fs::read(watch.path("m.rgg")).unwrap();
+    fs::write(watch.path("m.rgg"), before).unwrap();
+    fs::write(watch.path("m.toml"), "[camera]\nfov = 20\n").unwrap();
+    events.whole("the file beside it", |state| {
+        state["changed"] == serde_json::json!(["m.toml"])
+    });
+    assert_eq!(watch.stop(), Some(0));
+}
+
+#[test]
+fn a_full_disk_is_told_and_outlived() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("disk")).unwrap();
+    let disk = Disk::mount(&folder.path().join("disk"));
+    fs::write(folder.path().join("m.rgg"), ball("1")).unwrap();
+    let arguments = [
+        "--port",
+        "0",
+        "--steps",
+        "0",
+        "--size",
+        "60x40",
+        "-o",
+        "disk/m.png",
+    ];
+    let watch = Watch::inside(folder, &arguments);
+    watch.wait("disk/m.png: 60x40");
+    let good = fs::read(watch.path("disk/m.png")).unwrap();
+
+    disk.fill();
+    fs::write(watch.path("m.rgg"), ball("2")).unwrap();
+    let seen = watch.until("waiting for a change").join("\n");
+    assert!(seen.contains("m.png"), "which file: {seen}");
+    // The last good picture is whole, and nothing lies beside it.
+    disk.free();
+    assert!(fs::read(watch.path("disk/m.png")).unwrap() == good);
+    assert_eq!(fs::read_dir(watch.path("disk")).unwrap().count(), 1);
+
+    fs::write(watch.path("m.rgg"), ball("3")).unwrap();
+    watch.wait("disk/m.png: 60x40");
+    assert!(fs::read(watch.path("disk/m.png")).unwrap() != good);
+    drop(disk);
+    assert_eq!(watch.stop(), Some(0));
+}
+
+/// A very small file system, or where none may be mounted, a folder that is not there for a while.
+struct Disk {
+    path: PathBuf,
+    is_mounted: bool,
+}
+
+impl Disk {
+    fn mount(path: &std::path::Path) -> Self {
+        let mount = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"])
+            .arg(path)
+            .stderr(Stdio::null())
+            .status();
+        Self {
+            path: path.to_owned(),
+            is_mounted: mount.is_ok_and(|status| status.success()),
+        }
+    }
+
+    fn away(&self) -> PathBuf {
+        self.path.with_extension("away")
+    }
+
+    /// From here on there is no room.
+    fn fill(&self) {
+        if !self.is_mounted {
+            return fs::rename(&self.path, self.away()).unwrap();
+        }
+        use std::io::Write;
+        let mut file = fs::File::create(self.path.join("ballast")).unwrap();
+        while file.write_all(&[0; 512]).is_ok() {}
+    }
+
+    /// Here there is room again.
+    fn free(&self) {
+        if self.is_mounted {
+            fs::remove_file(self.path.join("ballast")).unwrap();
+        } else {
+            fs::rename(self.away(), &self.path).unwrap();
+        }
+    }
+}
+
+impl Drop for Disk {
+    fn drop(&mut self) {
+        if self.is_mounted {
+            // Lazily: the program still runs.
+            let _ = Command::new("umount").arg("-l").arg(&self.path).status();
+        }
+    }
+}
+
+#[test]
+fn many_saves_leak_nothing() {
+    let watch = Watch::of(PLANT, &["--steps", "3", "--size", "30x20"]);
+    let mut events = watch.visitor().events();
+    events.whole("a first picture", |_| true);
+    let memory = || {
+        let status = fs::read_to_string(format!("/proc/{}/status", watch.child.id()));
+        let status = status.unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+        line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok())
+    };
+    let mut early = None;
+    for n in 1..=300_u64 {
+        // Every tenth one is a mistake, every other one changes a rule.
+        let text = match n % 10 {
+            9 => PLANT.replace("Bud ==>", "Bud ==>> ==>"),
+            _ => PLANT.replace("0.2)", &format!("0.{:02})", 10 + n % 83)),
+        };
+        fs::write(watch.path("m.rgg"), text).unwrap();
+        events.until("the end of a round", |state| {
+            let is_over = state["activity"] == "done" || state["activity"] == "failed";
+            is_over && state["round"].as_u64() == Some(n + 1)
+        });
+        if n == 100 {
+            early = memory();
+        }
+    }
+    // Only Linux tells.
+    if let Some((early, late)) = early.zip(memory()) {
+        assert!(
+            late < 1.1 * early,
+            "{early} kB after 100 saves, {late} after 300"
+        );
+    }
+    assert_eq!(watch.stop(), Some(0));
+}

@@ -63,43 +63,12 @@ impl Outline {
     pub fn of(model: &Model) -> Self {
         let constants = constants(model);
         let print = |part: &dyn Debug| digest(&format!("{part:?}"), &constants);
-        let statics = model.statics.iter().zip(&constants);
-        let statics: Vec<_> = statics
-            .map(|(s, simple)| {
-                let init = s.init.as_ref().filter(|_| simple.is_none());
-                print(&(&s.name, &s.ty, s.is_constant, init))
-            })
-            .collect();
-        let types: Vec<_> = model.types.iter().map(|(_, ty)| print(ty)).collect();
-        let modules = model.modules.iter().map(|module| {
-            let constructor = print(&(&module.constructor.params, &module.constructor.body));
-            print(&(constructor, module.type_id, module.class, &module.overrides))
-        });
-        let signatures = model.methods.iter().map(|method| {
-            let has_body = method.body.is_some();
-            print(&(
-                &method.name,
-                method.this,
-                &method.params,
-                &method.result,
-                has_body,
-            ))
-        });
-        let starts = (model.startup, model.init, &model.entries);
-        let (modules, signatures): (Vec<_>, Vec<_>) = (modules.collect(), signatures.collect());
         let instantiations = model.modules.iter().map(|m| {
             let body = m.instantiation.as_ref();
             body.map(|i| (print(&i.body), i.is_pure))
         });
         Self {
-            frame: print(&(
-                types,
-                statics,
-                &model.interfaces,
-                modules,
-                signatures,
-                starts,
-            )),
+            frame: frame(model, &constants),
             drawing: print(&instantiations.collect::<Vec<_>>()),
             methods: model
                 .methods
@@ -183,6 +152,39 @@ impl RulePart {
             .as_ref()
             .is_none_or(|types| types.iter().any(is_there))
     }
+}
+
+/// A number for what every step of a model depends on.
+fn frame(model: &Model, constants: &[Option<u64>]) -> u64 {
+    let print = |part: &dyn Debug| digest(&format!("{part:?}"), constants);
+    let statics = model.statics.iter().zip(constants);
+    let statics: Vec<_> = statics
+        .map(|(s, simple)| {
+            let init = s.init.as_ref().filter(|_| simple.is_none());
+            print(&(&s.name, &s.ty, s.is_constant, init))
+        })
+        .collect();
+    // Built-in types are the same in all models.
+    let own = model.types.iter().filter(|(id, ty)| ty.builtin != *id);
+    let types: Vec<_> = own.map(|(_, ty)| print(ty)).collect();
+    let modules = model.modules.iter().map(|module| {
+        let constructor = print(&(&module.constructor.params, &module.constructor.body));
+        print(&(constructor, module.type_id, module.class, &module.overrides))
+    });
+    let signatures = model.methods.iter().map(|method| {
+        let has_body = method.body.is_some();
+        print(&(
+            &method.name,
+            method.this,
+            &method.params,
+            &method.result,
+            has_body,
+        ))
+    });
+    let starts = (model.startup, model.init, &model.entries);
+    let (modules, signatures): (Vec<_>, Vec<_>) = (modules.collect(), signatures.collect());
+    let interfaces = &model.interfaces;
+    print(&(types, statics, interfaces, modules, signatures, starts))
 }
 
 fn method_part(model: &Model, body: Option<&[Stmt]>, constants: &[Option<u64>]) -> MethodPart {

@@ -43,24 +43,30 @@ struct Found<'w> {
 }
 
 impl Found<'_> {
-    /// Adds a file; gives its content if it is there and was not known.
-    fn add(&mut self, path: &Path) -> Option<Vec<u8>> {
+    /// Adds a file; tells whether it is there and was not known.
+    fn add(&mut self, path: &Path) -> bool {
         if self.files.contains_key(path) || self.world.entry(path) != Entry::File {
-            return None;
+            return false;
         }
-        let content = self.world.read(path).ok()?;
-        self.files
-            .insert(path.to_owned(), ContentHash::of([&content[..]]));
-        Some(content)
+        let hash = self.world.hash(path);
+        if let Ok(hash) = hash {
+            self.files.insert(path.to_owned(), hash);
+        }
+        hash.is_ok()
     }
 
     /// Adds a file with what belongs to it.
     fn mesh_or_picture(&mut self, path: &Path) {
-        let document = self.add(path).filter(|_| has_suffix(path, "gltf"));
-        let library = self.add(&path.with_extension("mtl"));
+        let library = path.with_extension("mtl");
+        let is_document = self.add(path) && has_suffix(path, "gltf");
+        let has_library = self.add(&library);
         self.add(&path.with_extension("bin"));
         let folder = folder_of(path).to_owned();
-        for content in [document, library].into_iter().flatten() {
+        let speaking = [(is_document, path), (has_library, &*library)];
+        for (_, path) in speaking.into_iter().filter(|(is_there, _)| *is_there) {
+            let Ok(content) = self.world.read(path) else {
+                continue;
+            };
             let text = String::from_utf8_lossy(&content);
             let words = text.lines().filter_map(|line| {
                 let is_map = line.trim_start().starts_with("map_");

@@ -154,40 +154,9 @@ pub(super) fn grow(
     mut history: Option<&mut History>,
 ) -> Result<(Growth, u32), Failure> {
     let blame = |fault: Box<Diagnostic>| blame_growth(run, memory, cancel, *fault);
-    let limits = eval::Limits::default();
-    let nodes = run
-        .options
-        .max_modules
-        .value
-        .get()
-        .min(memory / BYTES_PER_MODULE);
-    let limits = eval::Limits {
-        nodes,
-        memory: limits.memory.min(memory),
-        ..limits
-    };
-    let options = GrowthOptions {
-        seed: run.options.seed.value,
-        limits,
-        entry: run.options.entry.value.clone(),
-    };
-    let listener = audience.clone();
     let notebook = history.as_ref().map(|history| history.notebook());
-    let output = Box::new(move |text: &str| {
-        listener.printed(text);
-        notebook.iter().for_each(|notebook| notebook(text));
-    });
-    let token = cancel.clone();
-    let stop = Box::new(move || token.is_cancelled());
-    let mut growth = Growth::new(&run.model, options, output, stop).map_err(blame)?;
+    let mut growth = seed(run, memory, (audience, notebook), cancel).map_err(blame)?;
     growth.set_files(files);
-    growth.set_light_solver(Box::new(SceneLight {
-        memory,
-        body_nodes: run.options.max_modules.value.get(),
-        cancel: cancel.clone(),
-        audience: audience.clone(),
-        pictures: DecodedPictures::default(),
-    }));
     let n_steps = steps(&run.options, &growth);
     let known = match &mut history {
         Some(history) => history
@@ -213,6 +182,43 @@ pub(super) fn grow(
         audience.progress(u64::from(step) + 1, u64::from(n_steps));
     }
     Ok((growth, first))
+}
+
+/// A model before `init`, within `memory` bytes, that prints to an audience and a notebook.
+fn seed(
+    run: &Run,
+    memory: u64,
+    (audience, notebook): (&Arc<dyn Audience>, Option<impl Fn(&str) + Send + 'static>),
+    cancel: &CancelToken,
+) -> Result<Growth, Box<Diagnostic>> {
+    let limits = eval::Limits::default();
+    let most = run.options.max_modules.value.get();
+    let limits = eval::Limits {
+        nodes: most.min(memory / BYTES_PER_MODULE),
+        memory: limits.memory.min(memory),
+        ..limits
+    };
+    let options = GrowthOptions {
+        seed: run.options.seed.value,
+        limits,
+        entry: run.options.entry.value.clone(),
+    };
+    let listener = audience.clone();
+    let output = Box::new(move |text: &str| {
+        listener.printed(text);
+        notebook.iter().for_each(|notebook| notebook(text));
+    });
+    let token = cancel.clone();
+    let stop = Box::new(move || token.is_cancelled());
+    let mut growth = Growth::new(&run.model, options, output, stop)?;
+    growth.set_light_solver(Box::new(SceneLight {
+        memory,
+        body_nodes: most,
+        cancel: cancel.clone(),
+        audience: audience.clone(),
+        pictures: DecodedPictures::default(),
+    }));
+    Ok(growth)
 }
 
 /// Grows a model by one more step.

@@ -17,6 +17,7 @@ pub mod exposing;
 pub mod failure;
 pub mod filming;
 pub mod growing;
+mod hashes;
 mod history;
 pub mod inputs;
 pub mod light_models;

@@ -96,11 +96,9 @@ impl Reads {
 }
 
 fn changed(contents: &Contents, world: &dyn World) -> Contents {
-    let now = contents.iter().map(|(path, then)| {
-        let content = world.read(path).ok();
-        let hash = content.map(|content| ContentHash::of([&content[..]]));
-        (path, hash, then)
-    });
+    let now = contents
+        .iter()
+        .map(|(path, then)| (path, world.hash(path).ok(), then));
     now.filter(|(_, now, then)| now != *then)
         .map(|(path, now, _)| (path.clone(), now))
         .collect()

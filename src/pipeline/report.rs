@@ -124,6 +124,10 @@ pub struct Work {
     pub drawings: u64,
     /// Acceleration structures built.
     pub accels: u64,
+    /// Prototypes (parts that are drawn many times) that one was built for.
+    pub prototypes: u64,
+    /// Prototypes that kept theirs from the scene before.
+    pub kept_prototypes: u64,
     /// Scenes set up: with other light or colours, say, round shapes that are there.
     pub scenes: u64,
     /// View-independent solutions of a renderer.

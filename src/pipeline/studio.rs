@@ -306,9 +306,11 @@ impl<'w> Studio<'w> {
         }
         let alike = self.alike(digest);
         self.work.accels += u64::from(alike.is_none());
+        let is_built = alike.is_none();
+        let before = self.shapes.as_ref().and_then(|(_, scene)| scene.upgrade());
         let built = self.seconds.time(self.world, Phase::Accel, || match alike {
             Some(alike) => alike.relit(drawn.scene),
-            None => Scene::build_unless(drawn.scene, &stop),
+            None => Scene::build_like(drawn.scene, before.as_deref(), &stop),
         });
         self.audience.ends();
         if cancel.is_cancelled() {
@@ -316,6 +318,11 @@ impl<'w> Studio<'w> {
         }
         let scene = built.map_err(|error| growing::blame(run, &drawn.organs, &error))?;
         self.work.scenes += 1;
+        if is_built {
+            let (n_built, n_kept) = scene.prototypes();
+            self.work.prototypes += n_built as u64;
+            self.work.kept_prototypes += n_kept as u64;
+        }
         let scene = Arc::new(scene);
         self.shapes = digest.map(|digest| (digest, Arc::downgrade(&scene)));
         self.scene = Some((key, scene.clone()));

@@ -1,11 +1,13 @@
 //! All that a run needs of the machine: files, the clock, memory.
 
+use super::content_hash::ContentHash;
+use super::hashes::Hashes;
 use super::packed::{self, Packed, Shelf};
 use super::project_files::{ListFolder, ReadFile, RealPath};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// No model file is larger than this many bytes: 256 MiB.
 const LARGEST_FILE: u64 = 1 << 28;
@@ -39,6 +41,14 @@ pub trait World: Sync {
     /// # Errors
     /// If it cannot be read, or is absurdly large.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+
+    /// The digest of the content of a file, at little cost if the file is as it was.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    fn hash(&self, path: &Path) -> io::Result<ContentHash> {
+        Ok(ContentHash::of([&self.read(path)?[..]]))
+    }
 
     /// The content of a file of at most so many bytes, however large models may be.
     ///
@@ -100,6 +110,7 @@ pub trait World: Sync {
 pub struct Machine {
     start: Instant,
     shelf: Shelf,
+    hashes: Arc<Hashes>,
 }
 
 impl Machine {
@@ -108,6 +119,7 @@ impl Machine {
         Self {
             start: Instant::now(),
             shelf: Shelf::default(),
+            hashes: Arc::default(),
         }
     }
 
@@ -122,6 +134,7 @@ impl Machine {
         Self {
             start: self.start,
             shelf: self.shelf.clone(),
+            hashes: self.hashes.clone(),
         }
     }
 }
@@ -185,6 +198,13 @@ impl World for Machine {
         match self.packed(path) {
             Some((packed, inside)) => not_too_large(packed?.read(inside, LARGEST_FILE + 1)?),
             None => whole(path),
+        }
+    }
+
+    fn hash(&self, path: &Path) -> io::Result<ContentHash> {
+        match self.packed(path) {
+            Some(_) => Ok(ContentHash::of([&self.read(path)?[..]])),
+            None => self.hashes.of(path, SystemTime::now(), || whole(path)),
         }
     }
 

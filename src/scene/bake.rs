@@ -39,6 +39,24 @@ pub(super) fn bake(
     Ok(group)
 }
 
+/// A prototype of the same shapes in the same places as one that was built before, of other materials and organs perhaps.
+pub(super) fn dressed(
+    planned: &PlannedGroup,
+    known: &Group,
+    materials: &[Material],
+) -> Result<Group, SceneError> {
+    let mut group = known.clone();
+    for (record, planned) in group.shapes.iter_mut().zip(&planned.shapes) {
+        check_shape(planned, materials.len())?;
+        record.material = planned.material;
+        record.organ = planned.organ;
+        record.instance_organ = planned.instance_organ;
+    }
+    let is_opaque = |shape: &ShapeRecord| materials[shape.material.0 as usize].is_opaque();
+    group.is_opaque = group.shapes.iter().all(is_opaque);
+    Ok(group)
+}
+
 fn empty_group(frame: GroupFrame) -> Group {
     Group {
         frame,

@@ -2,6 +2,7 @@
 
 use super::Stop;
 use super::description::{Group, PlacedShape, SceneDescription};
+use super::plan::PlannedGroup;
 use crate::geometry::Shape;
 use crate::material::Material;
 use crate::math::rng::hash_on;
@@ -80,10 +81,24 @@ fn group_digest(group: &Group, stop: Stop<'_>) -> u64 {
     digest.0
 }
 
+/// A number that prototypes share whose shapes and their places are equal, whatever they are made of and whoever they belong
+/// to. Of others, two share it with a probability of 2⁻⁶⁴.
+pub(super) fn prototype_digest(planned: &PlannedGroup) -> u64 {
+    let mut digest = Digest(4);
+    for placed in &planned.shapes {
+        add_form(&mut digest, (placed.shape, &placed.to_group));
+    }
+    digest.0
+}
+
 fn add_shape(digest: &mut Digest, placed: &PlacedShape) {
     digest.add(u64::from(placed.material.0) << 32 | u64::from(placed.organ.0));
-    digest.add_map(&placed.to_group);
-    match &placed.shape {
+    add_form(digest, (&placed.shape, &placed.to_group));
+}
+
+fn add_form(digest: &mut Digest, (shape, to_group): (&Shape, &DAffine3)) {
+    digest.add_map(to_group);
+    match shape {
         Shape::Sphere { radius } => {
             digest.add(1);
             digest.add_real(*radius);
@@ -141,7 +156,7 @@ mod tests {
     use super::*;
     use crate::color::Rgb;
     use crate::math::Ray;
-    use crate::scene::description::{GroupId, MaterialId, OrganId};
+    use crate::scene::description::{GroupId, Instance, MaterialId, OrganId};
     use crate::scene::{Scene, SceneError};
     use glam::DVec3;
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -212,6 +227,60 @@ mod tests {
         for tenth in 0..10 {
             let (stopped, _) = build(n_asks * tenth / 10);
             assert_eq!(stopped, Err(SceneError::Stopped), "at {tenth} tenths");
+        }
+    }
+
+    #[test]
+    fn prototypes_that_stay_as_they_were_are_not_built_again() {
+        // Two twigs of twenty balls each, in three places each.
+        let twigs = |size: f64, organ: u32, color: Rgb| {
+            let twig = |radius: f64| Group {
+                shapes: (0..20)
+                    .map(|x| PlacedShape {
+                        shape: Shape::Sphere { radius },
+                        to_group: DAffine3::from_translation(DVec3::new(f64::from(x), 0.0, 0.0)),
+                        material: MaterialId(0),
+                        organ: OrganId(organ),
+                    })
+                    .collect(),
+                instances: vec![],
+            };
+            let place = |n: u32| Instance {
+                group: GroupId(n % 2),
+                to_group: DAffine3::from_translation(DVec3::new(0.0, 3.0 * f64::from(n), 0.0)),
+                organ: OrganId(100 + n),
+            };
+            let whole = Group {
+                shapes: vec![],
+                instances: (0..6).map(place).collect(),
+            };
+            SceneDescription {
+                materials: vec![Material::lambert(color)],
+                groups: vec![twig(0.3), twig(size), whole],
+                root: Some(GroupId(2)),
+                ..SceneDescription::default()
+            }
+        };
+        let (red, green) = (Rgb::new(0.9, 0.1, 0.1), Rgb::new(0.1, 0.9, 0.1));
+        let first = Scene::build(twigs(0.4, 1, red)).unwrap();
+        assert_eq!(first.prototypes(), (2, 0));
+        for (size, kept) in [(0.5, 1), (0.4, 2)] {
+            // Organs and materials are the new ones, whatever is kept.
+            let fresh = Scene::build(twigs(size, 7, green)).unwrap();
+            let next = Scene::build_like(twigs(size, 7, green), Some(&first), &|| false).unwrap();
+            assert_eq!(next.prototypes(), (2 - kept, kept));
+            assert_eq!(fresh.bounds(), next.bounds());
+            for x in 0..40 {
+                for y in 0..18 {
+                    let from = DVec3::new(0.5 * f64::from(x), f64::from(y) - 0.1, -9.0);
+                    let ray = Ray::new(from, DVec3::Z);
+                    let (a, b) = (fresh.closest(&ray), next.closest(&ray));
+                    assert_eq!(a, b);
+                    let Some(hit) = a else { continue };
+                    let organ = |scene: &Scene| scene.surface(&ray, &hit).organ;
+                    assert_eq!(organ(&fresh), organ(&next));
+                }
+            }
         }
     }
 

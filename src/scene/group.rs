@@ -39,7 +39,7 @@ impl GroupFrame {
 }
 
 /// A group ready for rays. All coordinates are in its [`GroupFrame`].
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Group {
     pub(super) frame: GroupFrame,
     /// The box of everything in it, widened like all stored boxes; empty if it holds nothing.
@@ -192,7 +192,7 @@ pub(super) struct ShapeRecord {
 }
 
 /// What shading wants to know of a mesh beyond its triangles.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct MeshShading {
     pub(super) mesh: Arc<TriangleMesh>,
     /// From normals of the mesh to normals in the group's frame, up to length.

@@ -82,6 +82,7 @@ use glam::DAffine3;
 use group::Group;
 use planes::WorldPlane;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Asked now and then whether to go on; `true` if not.
@@ -95,6 +96,10 @@ pub struct Scene {
     environment: Environment,
     /// Each group after all it refers to; the root is the last. Shared by worlds that differ in light and colour only.
     groups: Arc<[Group]>,
+    /// Digests of those groups that refer to no others, the root left out.
+    prototypes: Arc<[Option<u64>]>,
+    /// How many of them were taken over from another world.
+    n_kept: usize,
     /// From world coordinates to the root's frame.
     to_root: DAffine3,
     /// Back again.
@@ -140,9 +145,23 @@ impl Scene {
     /// # Errors
     /// As [`build`](Self::build), or [`SceneError::Stopped`].
     pub fn build_unless(description: SceneDescription, stop: Stop<'_>) -> Result<Self, SceneError> {
+        Self::build_like(description, None, stop)
+    }
+
+    /// As [`build_unless`](Self::build_unless), but what is drawn many times and is also in the world `before`, perhaps of other
+    /// materials, is taken from there with its hierarchy.
+    ///
+    /// # Errors
+    /// As [`build_unless`](Self::build_unless).
+    pub fn build_like(
+        description: SceneDescription,
+        before: Option<&Self>,
+        stop: Stop<'_>,
+    ) -> Result<Self, SceneError> {
         check_light(&description)?;
         let plan = plan::plan(&description, stop)?;
-        let groups = bake_all(&plan, &description.materials, stop)?;
+        let known = Known::of(before, &plan);
+        let groups = bake_all(&plan, &description.materials, &known, stop)?;
         let planes = planes::world_planes(&plan.groups)?;
         drop(plan);
 
@@ -158,6 +177,8 @@ impl Scene {
             lights: description.lights,
             environment: description.environment,
             groups: groups.into(),
+            n_kept: known.kept.iter().flatten().count(),
+            prototypes: known.digests.into(),
             to_root,
             from_root: to_root.inverse(),
             planes,
@@ -179,6 +200,7 @@ impl Scene {
             lights: description.lights,
             environment: description.environment,
             groups: self.groups.clone(),
+            prototypes: self.prototypes.clone(),
             planes: self.planes.clone(),
             emitters: Vec::new(),
             ..*self
@@ -190,6 +212,13 @@ impl Scene {
     fn shining(mut self) -> Result<Self, SceneError> {
         self.emitters = emitter::collect(&self)?;
         Ok(self)
+    }
+
+    /// How many prototypes were built with hierarchies of their own, and how many were taken over.
+    #[must_use]
+    pub fn prototypes(&self) -> (usize, usize) {
+        let n_all = self.prototypes.iter().flatten().count();
+        (n_all - self.n_kept, self.n_kept)
     }
 
     /// The materials, by [`MaterialId`].
@@ -290,10 +319,42 @@ fn check_light(description: &SceneDescription) -> Result<(), SceneError> {
         .map_err(SceneError::Environment)
 }
 
+/// What a plan has in common with a world that is there.
+struct Known<'w> {
+    /// By planned group, see [`Scene::prototypes`].
+    digests: Vec<Option<u64>>,
+    /// The group with the same shapes.
+    kept: Vec<Option<&'w Group>>,
+}
+
+impl<'w> Known<'w> {
+    fn of(before: Option<&'w Scene>, plan: &plan::Plan) -> Self {
+        let root = plan.groups.len().saturating_sub(1);
+        let planned = plan.groups.par_iter().enumerate();
+        let digests: Vec<Option<u64>> = planned
+            .map(|(number, group)| {
+                let is_prototype = number != root && group.instances.is_empty();
+                is_prototype.then(|| digest::prototype_digest(group))
+            })
+            .collect();
+        let there: BTreeMap<u64, &Group> = before
+            .into_iter()
+            .flat_map(|scene| scene.prototypes.iter().zip(scene.groups.iter()))
+            .filter_map(|(digest, group)| Some(((*digest)?, group)))
+            .collect();
+        let find = |digest: &Option<u64>| there.get(digest.as_ref()?).copied();
+        Self {
+            kept: digests.iter().map(find).collect(),
+            digests,
+        }
+    }
+}
+
 /// Bakes the groups level by level, those of one level in parallel.
 fn bake_all(
     plan: &plan::Plan,
     materials: &[Material],
+    known: &Known<'_>,
     stop: Stop<'_>,
 ) -> Result<Vec<Group>, SceneError> {
     let mut built: Vec<Group> = Vec::with_capacity(plan.groups.len());
@@ -303,10 +364,14 @@ fn bake_all(
             .iter()
             .take_while(|group| group.instances.iter().all(|to| to.group < built.len()))
             .count();
-        let run = &plan.groups[built.len()..built.len() + ready];
-        let baked: Vec<_> = run
+        let run = built.len()..built.len() + ready;
+        let baked: Vec<_> = plan.groups[run.clone()]
             .par_iter()
-            .map(|group| bake::bake(group, &built, (materials, stop)))
+            .zip(&known.kept[run])
+            .map(|(group, kept)| match kept {
+                Some(kept) => bake::dressed(group, kept, materials),
+                None => bake::bake(group, &built, (materials, stop)),
+            })
             .collect();
         for group in baked {
             built.push(group?);

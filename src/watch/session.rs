@@ -202,4 +202,39 @@ mod tests {
             sender.send(Event::Quit).unwrap();
         });
     }
+
+    #[test]
+    fn where_the_file_system_tells_nothing_it_is_asked() {
+        let world = FakeWorld::default();
+        world.put("m/p.rgg", "one");
+        let (runs, seen) = channel();
+        let (sender, events) = channel();
+        let mut puppet = Puppet {
+            world: &world,
+            runs,
+        };
+        std::thread::scope(|scope| {
+            let (world, events_in) = (&world, sender.clone());
+            let puppet = &mut puppet;
+            scope.spawn(move || {
+                let watched = Watched {
+                    world,
+                    model: Path::new("m/p.rgg"),
+                    reads: Reads::default(),
+                    follower: None,
+                    interrupt: &|| {},
+                };
+                watch(watched, puppet, events_in, events);
+            });
+            assert_eq!(seen.recv().unwrap(), "one []");
+            // Nobody says that anything was touched.
+            world.put("m/p.rgg", "two");
+            assert_eq!(seen.recv().unwrap(), "two [\"p.rgg\"]");
+            world.put("m/p.rgg", "forever");
+            assert_eq!(seen.recv().unwrap(), "forever [\"p.rgg\"]");
+            world.put("m/p.rgg", "three");
+            assert_eq!(seen.recv().unwrap(), "three [\"p.rgg\"]");
+            sender.send(Event::Quit).unwrap();
+        });
+    }
 }

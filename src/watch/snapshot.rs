@@ -21,12 +21,9 @@ impl Snapshot {
     /// Looks at the inputs of `model`, and at what the last run has read besides, now.
     pub fn take(world: &dyn World, model: &Path, reads: &Reads) -> Self {
         let inputs = Inputs::find(world, model).unwrap_or_else(|_| Inputs::only(model));
+        let empty = ContentHash::of([&[][..]]);
         let read = |path: PathBuf| {
-            let hash = world
-                .read(&path)
-                .ok()
-                .filter(|content| !content.is_empty())
-                .map(|content| ContentHash::of([&content[..]]));
+            let hash = world.hash(&path).ok().filter(|hash| *hash != empty);
             (path, hash)
         };
         let texts = inputs

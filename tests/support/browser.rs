@@ -173,6 +173,26 @@ impl Browser {
         }
     }
 
+    /// Gives the window another size, and the user a liking for the dark.
+    pub(crate) fn dress(&mut self, width: u32, height: u32, is_dark: bool) {
+        let metrics =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.tell("Emulation.setDeviceMetricsOverride", metrics);
+        let scheme = if is_dark { "dark" } else { "light" };
+        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+        self.tell(
+            "Emulation.setEmulatedMedia",
+            json!({ "features": features }),
+        );
+        std::thread::sleep(Duration::from_millis(300));
+    }
+
+    /// Keeps a picture of the window as a PNG file.
+    pub(crate) fn keep(&mut self, path: &Path) {
+        let shot = self.tell("Page.captureScreenshot", json!({}));
+        std::fs::write(path, base64(shot["data"].as_str().unwrap())).unwrap();
+    }
+
     /// A mouse event at a place of the page.
     fn mouse(&mut self, kind: &str, (x, y): (f64, f64), buttons: u32) {
         let event = json!({

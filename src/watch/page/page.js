@@ -157,6 +157,11 @@ function problemElement(problem) {
     code.append(part(0, place.from), element('mark', '', part(place.from, place.to) || ' '), part(place.to));
     if (place.label) code.append('\n', element('span', 'label', place.label));
     box.append(link, code);
+    // On a narrow screen the place may be out of sight.
+    requestAnimationFrame(() => {
+      const [inside, outside] = [code.querySelector('mark'), code].map((e) => e.getBoundingClientRect());
+      if (inside.right > outside.right) code.scrollLeft += inside.left - outside.left - outside.width / 3;
+    });
   }
   for (const note of problem.notes) box.append(element('p', '', note));
   return box;

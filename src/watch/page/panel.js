@@ -7,8 +7,8 @@ const PHASES = [
   ['render', 'Rendering'], ['write', 'Writing'],
 ];
 const WORK = [
-  ['checks', 'Models checked'], ['growths', 'Growths'], ['steps', 'Steps of growth'], ['drawings', 'Drawings'],
-  ['accels', 'Structures built'], ['scenes', 'Scenes'], ['solutions', 'Solutions'], ['views', 'Views'],
+  ['checks', 'Models checked'], ['growths', 'Growths'], ['steps', 'Steps of growth'], ['kept_steps', 'Steps kept'], ['drawings', 'Drawings'],
+  ['accels', 'Structures built'], ['kept_prototypes', 'Prototypes kept'], ['scenes', 'Scenes'], ['solutions', 'Solutions'], ['views', 'Views'],
 ];
 
 const seconds = (s) => s >= 100 ? `${Math.round(s)} s` : s >= 1 ? `${s.toFixed(1)} s` : `${Math.round(1000 * s)} ms`;
