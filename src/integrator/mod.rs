@@ -25,6 +25,7 @@ pub mod photon_map;
 pub mod radiosity;
 pub mod raytracer;
 pub mod requirements;
+mod selection;
 mod solution;
 pub mod sources;
 mod split;

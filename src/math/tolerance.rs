@@ -245,3 +245,9 @@ pub const HEMICUBE_HORIZON: f64 = 1e-9;
 /// Larger than the steps that keep rays off the surface they leave, smaller than what is drawn apart from it. Used by
 /// [`crate::integrator::radiosity`].
 pub const ABOVE_SURFACE: f64 = 1e-6;
+
+/// What rounding may move cells of a grid by against the point that is searched round, as a share of them.
+///
+/// Places are known to `f64`, so only grids of more than 10⁶ cells along an axis come near it; those that cannot tell cells apart search
+/// all. Used by [`crate::integrator::photon_map::grid`].
+pub const CELL_SLACK: f64 = 1e-9;

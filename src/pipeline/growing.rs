@@ -52,7 +52,7 @@ impl Drawn {
         Ok(Self {
             scene: scene.ok_or(Failure::Stopped)?,
             organs: self.organs.clone(),
-            summary: self.summary.clone(),
+            summary: self.summary,
             sensors: self.sensors.clone(),
             plants: self.plants.clone(),
         })

@@ -9,13 +9,11 @@
 //! a k-d tree (kiddo 6.3, two cores, 80 photons found), and coincident points are nothing special to it.
 
 use crate::math::rng;
+use crate::math::tolerance::CELL_SLACK;
 use glam::{DVec3, IVec3};
 
 /// Cells along the edge of a block, as a power of two.
 const BLOCK: i32 = 2;
-
-/// What rounding may move cells by, as a share of them.
-const SLACK: f64 = 1e-9;
 
 /// How wide the cells of an [`Outline`] are, in radii of its searches.
 const OUTLINE: f64 = 4.0;
@@ -144,7 +142,7 @@ impl Reach {
             gaps: [within * within, DVec3::ZERO, rest * rest],
             height: normal.dot(DVec3::splat(0.5) - within),
             slope: normal,
-            most: (thickness + 0.5 * normal.abs().element_sum()) * (1.0 + SLACK),
+            most: (thickness + 0.5 * normal.abs().element_sum()) * (1.0 + CELL_SLACK),
         }
     }
 
@@ -153,7 +151,7 @@ impl Reach {
         let [x, y, z] = step.to_array().map(|step| (step + 1) as usize);
         let gap = self.gaps[x].x + self.gaps[y].y + self.gaps[z].z;
         let height = self.height + self.slope.dot(step.as_dvec3());
-        gap <= 1.0 + SLACK && height.abs() <= self.most
+        gap <= 1.0 + CELL_SLACK && height.abs() <= self.most
     }
 }
 

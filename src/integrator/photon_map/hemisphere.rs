@@ -73,7 +73,7 @@ impl Hemisphere {
     }
 
     /// The direction over a point of the unit disk.
-    fn to_world(&self, flat: DVec2) -> DVec3 {
+    fn to_world(self, flat: DVec2) -> DVec3 {
         let height = (1.0 - flat.length_squared()).max(0.0).sqrt();
         self.frame.to_world(flat.extend(height))
     }
