@@ -13,6 +13,7 @@ use std::fs;
 use std::process::Command;
 use std::sync::OnceLock;
 use understory::geometry::Shape;
+use understory::integrator::radiosity::Solver;
 use understory::integrator::{
     CancelToken, Integrator, Radiosity, RayCounts, RenderContext, Solution,
 };
@@ -125,6 +126,38 @@ fn a_solution_of_another_scene_is_found_anew() {
     let own = method().solve(&other, &context(&cancel)).unwrap();
     let foreign = method().restore(bytes).unwrap();
     assert!(looks(&other, &own) == looks(&other, &foreign));
+}
+
+/// Shooting can be seen while it goes on: at once about as bright as in the end, for what is left is spread over all; and what comes
+/// out in the end is not changed by looking.
+#[test]
+fn shooting_is_shown_on_the_way() {
+    let scene = scene(0.3);
+    let cancel = CancelToken::default();
+    let shooting = Radiosity {
+        solver: Some(Solver::Shoot),
+        ..method()
+    };
+    let mut shown = Vec::new();
+    let mut early = |so_far: &dyn Fn() -> Solution| {
+        if shown.len() < 4 {
+            shown.push(so_far());
+        }
+    };
+    let solved = shooting
+        .solve_showing(&scene, &context(&cancel), &mut early)
+        .unwrap();
+    let plain = shooting.solve(&scene, &context(&cancel)).unwrap();
+    assert!(solved.to_bytes() == plain.to_bytes());
+    assert!(shown.len() == 4, "{}", shown.len());
+    let brightness = |solution: &Solution| {
+        let looks = looks(&scene, solution);
+        let channels = looks.as_flattened().iter();
+        channels.map(|bits| f64::from_bits(*bits)).sum::<f64>()
+    };
+    let (first, last) = (brightness(&shown[0]), brightness(&solved));
+    assert!((first / last - 1.0).abs() < 0.2, "{first} {last}");
+    assert!(looks(&scene, &shown[0]) != looks(&scene, &solved));
 }
 
 proptest! {

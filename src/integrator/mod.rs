@@ -64,6 +64,20 @@ pub trait Integrator {
         Ok(Solution::Nothing)
     }
 
+    /// The same; `early` is told now and then that there is something to see already, and may ask for it. Methods that have nothing
+    /// before the end tell nothing. What comes out does not depend on it.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    fn solve_showing(
+        &self,
+        scene: &Scene,
+        context: &RenderContext<'_>,
+        _early: &mut dyn FnMut(&dyn Fn() -> Solution),
+    ) -> Result<Solution, RenderError> {
+        self.solve(scene, context)
+    }
+
     /// The second step: makes ready for rays what [`solve`](Self::solve) found out about the same scene. Methods without a solution
     /// do all their work here; so does any method that is given the solution of another.
     ///

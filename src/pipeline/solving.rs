@@ -66,6 +66,20 @@ impl Studio<'_> {
         scene: &Arc<Scene>,
         viewing: &Viewing<'_>,
     ) -> Result<Solved, Failure> {
+        self.solve_showing(run, scene, viewing, &mut |_| {})
+    }
+
+    /// The same; `early` is told when there is something to see while it is solved, and may ask for it.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub fn solve_showing(
+        &mut self,
+        run: &Run,
+        scene: &Arc<Scene>,
+        viewing: &Viewing<'_>,
+        early: &mut dyn FnMut(&dyn Fn() -> Solution),
+    ) -> Result<Solved, Failure> {
         let world = self.world;
         let files = self.solution_files.clone();
         let basis = if files.read.is_some() || files.save.is_some() {
@@ -81,7 +95,7 @@ impl Studio<'_> {
                 let solution = self.seconds.time(world, Phase::Read, read)?;
                 (solution, SolutionOrigin::Read)
             }
-            _ => self.kept_or_solved(run, scene, viewing)?,
+            _ => self.kept_or_solved(run, scene, viewing, early)?,
         };
         if let (Some(target), Some(basis), Some(content)) =
             (&files.save, &basis, solution.to_bytes())
@@ -112,6 +126,7 @@ impl Studio<'_> {
         run: &Run,
         scene: &Arc<Scene>,
         viewing: &Viewing<'_>,
+        early: &mut dyn FnMut(&dyn Fn() -> Solution),
     ) -> Result<(Solution, SolutionOrigin), Failure> {
         let known = self.scene.as_ref();
         let known = known.filter(|(_, known)| Arc::ptr_eq(known, scene));
@@ -127,7 +142,7 @@ impl Studio<'_> {
         let world = self.world;
         let solution = self
             .seconds
-            .time(world, Phase::Prepare, || viewing.solve(scene))?;
+            .time(world, Phase::Prepare, || viewing.solve(scene, early))?;
         if self.keep == Keep::All {
             self.solution = key.map(|key| (key, solution.clone()));
         }

@@ -61,11 +61,15 @@ pub struct Shot {
 }
 
 impl Viewing<'_> {
-    /// Solves the light that all cameras share.
+    /// Solves the light that all cameras share; `early` may show what there is meanwhile.
     ///
     /// # Errors
     /// If it was stopped, or needs more memory than there is.
-    pub fn solve(&self, scene: &Scene) -> Result<Solution, Failure> {
+    pub fn solve(
+        &self,
+        scene: &Scene,
+        early: &mut dyn FnMut(&dyn Fn() -> Solution),
+    ) -> Result<Solution, Failure> {
         let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
         let mut method = method(self.options);
         if let Method::Photon(photon_mapping) = &mut method {
@@ -75,9 +79,8 @@ impl Viewing<'_> {
         if let Method::Radiosity(radiosity) = &mut method {
             radiosity.memory = budget::memory(self.world, self.options);
         }
-        let solution = method
-            .integrator()
-            .solve(scene, &self.context(self.cancel, &report));
+        let context = self.context(self.cancel, &report);
+        let solution = method.integrator().solve_showing(scene, &context, early);
         solution.map_err(|error| failure(&error))
     }
 

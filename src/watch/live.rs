@@ -2,6 +2,7 @@
 //! asked for; and all over again, from the first stage that differs, whenever the files or the wishes of the page do.
 
 use super::command;
+use super::early::Early;
 use super::pace::Pace;
 use super::problems::{self, Problem};
 use super::room::{Room, Task};
@@ -10,7 +11,7 @@ use super::showing::{Sight, viewing};
 use super::state::{self, Activity, Number};
 use super::wish::Wish;
 use crate::film::LinearImage;
-use crate::integrator::CancelToken;
+use crate::integrator::{CancelToken, Solution};
 use crate::options::{Options, Section};
 use crate::pipeline::audience::Audience;
 use crate::pipeline::constants::{self, Change};
@@ -25,6 +26,7 @@ use crate::scene::Scene;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Where pictures go besides the page, and who hears of them.
 pub trait Outlet: Sync {
@@ -212,7 +214,24 @@ impl<'s> Live<'s> {
         let audience = self.audience.clone();
         let viewing = viewing(self.world, &*audience, &run, &first.cancel);
         audience.begins("preparing");
-        let solved = self.studio.solve(&run, scene, &viewing)?;
+        let view = viewpoint::of_scene(&run.options, scene);
+        let room = self.room.clone();
+        let mut early = Early {
+            viewing,
+            scene,
+            camera: viewpoint::camera(&run.sources, &run.options, &view)?,
+            room: &room,
+            next: Duration::ZERO,
+        };
+        let is_once = self.is_once;
+        let mut show = |so_far: &dyn Fn() -> Solution| {
+            if !is_once {
+                early.show(so_far);
+            }
+        };
+        let solved = self
+            .studio
+            .solve_showing(&run, scene, &viewing, &mut show)?;
         let start = self.world.now();
         let prepared = viewing.prepare(scene, &solved.solution)?;
         let time = self.world.now().saturating_sub(start);

@@ -15,6 +15,7 @@
 
 pub mod command;
 pub mod desk;
+mod early;
 pub mod editor;
 pub mod files;
 pub mod live;

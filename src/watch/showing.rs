@@ -1,7 +1,7 @@
 //! Showing a scene: a first impression at once, then better ones, then the picture that was asked for.
 
 use super::live::{Finished, Live};
-use super::room::{File, Task};
+use super::room::{File, Room, Task};
 use super::state::{Activity, Frame};
 use crate::camera::Camera;
 use crate::film::LinearImage;
@@ -121,7 +121,7 @@ impl Live<'_> {
                 error: shot.effort.relative_error,
                 ..frame(&shot.image, true, shot.effort.samples_per_pixel)
             };
-            self.send(&picture, Format::Png, &sight.run.texts(), frame);
+            send(&self.room, &picture, Format::Png, &sight.run.texts(), frame);
         }
         let time = self.world.now().saturating_sub(start);
         self.studio.seconds.add(Phase::Write, time);
@@ -151,21 +151,26 @@ impl Live<'_> {
     }
 
     fn publish(&self, image: &LinearImage, exposure: f64, frame: Frame) {
-        let picture = exposing::develop(image, Format::Jpeg, exposure);
-        self.send(&picture, Format::Jpeg, &[], frame);
+        publish(&self.room, image, exposure, frame);
     }
+}
 
-    fn send(&self, picture: &Picture, format: Format, texts: &[(&str, String)], frame: Frame) {
-        let kind = if format == Format::Png {
-            "image/png"
-        } else {
-            "image/jpeg"
-        };
-        // What is too large for a format is not shown, and still written where that is wanted.
-        if let Ok(bytes) = encode(picture, format, texts) {
-            let bytes = bytes.into();
-            self.room.show(File { bytes, kind }, frame);
-        }
+/// Shows a picture that a better one will follow.
+pub(super) fn publish(room: &Room, image: &LinearImage, exposure: f64, frame: Frame) {
+    let picture = exposing::develop(image, Format::Jpeg, exposure);
+    send(room, &picture, Format::Jpeg, &[], frame);
+}
+
+fn send(room: &Room, picture: &Picture, format: Format, texts: &[(&str, String)], frame: Frame) {
+    let kind = if format == Format::Png {
+        "image/png"
+    } else {
+        "image/jpeg"
+    };
+    // What is too large for a format is not shown, and still written where that is wanted.
+    if let Ok(bytes) = encode(picture, format, texts) {
+        let bytes = bytes.into();
+        room.show(File { bytes, kind }, frame);
     }
 }
 
@@ -184,7 +189,7 @@ pub(super) fn viewing<'v>(
     }
 }
 
-fn frame(image: &LinearImage, is_final: bool, samples: u32) -> Frame {
+pub(super) fn frame(image: &LinearImage, is_final: bool, samples: u32) -> Frame {
     Frame {
         number: 0,
         width: image.width,

@@ -107,7 +107,7 @@ impl Opened {
             cancel: &cancel,
         };
         let begin = Instant::now();
-        let solution = viewing.solve(&scene).unwrap();
+        let solution = viewing.solve(&scene, &mut |_| {}).unwrap();
         let prepared = viewing.prepare(&scene, &solution).unwrap();
         let solved = Instant::now();
         let shot = viewing.shoot(&prepared, &camera).unwrap();

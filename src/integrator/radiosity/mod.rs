@@ -17,7 +17,7 @@
 //! source    what light sources give      stochastic  all patches at once, nothing stored
 //! view      from the camera              rays        form factors by rays
 //! polygon   between polygons, on paper   hemicube    drawn onto half a cube
-//! kept      as bytes
+//! kept      as bytes                      solution    what is kept
 //! painted   as a mesh with colours        analytic    on paper where that holds
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
@@ -32,6 +32,7 @@ mod polygon;
 mod rays;
 mod refine;
 mod shoot;
+mod solution;
 mod source;
 mod stochastic;
 mod system;
@@ -55,6 +56,8 @@ use mesh::{Mesh, NONE};
 use rayon::prelude::*;
 use rays::CosineRays;
 use refine::Refinement;
+pub use solution::RadiositySolution;
+use solution::{light_of, of_patches};
 use source::{Lighting, has_stray_light};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -67,9 +70,6 @@ const BYTES_PER_PATCH: u64 = 1024;
 
 /// Bytes that a factor of a row takes.
 const BYTES_PER_FACTOR: u64 = size_of::<(u32, f32)>() as u64;
-
-/// Part of the mean light of a scene: where there is less, differences are compared with so much.
-const DARKEST: f64 = 0.125;
 
 /// Hemicubes along each side of a cell.
 const CUBES: u32 = 2;
@@ -154,7 +154,7 @@ impl Integrator for Radiosity {
         scene: &'s Scene,
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
-        let solution = self.solution(scene, context)?;
+        let solution = self.solution(scene, context, &mut |_| {})?;
         Ok(Box::new(self.look(scene, Arc::new(solution))))
     }
 
@@ -163,7 +163,16 @@ impl Integrator for Radiosity {
         scene: &Scene,
         context: &RenderContext<'_>,
     ) -> Result<super::Solution, RenderError> {
-        let solution = self.solution(scene, context)?;
+        self.solve_showing(scene, context, &mut |_| {})
+    }
+
+    fn solve_showing(
+        &self,
+        scene: &Scene,
+        context: &RenderContext<'_>,
+        early: &mut dyn FnMut(&dyn Fn() -> super::Solution),
+    ) -> Result<super::Solution, RenderError> {
+        let solution = self.solution(scene, context, early)?;
         Ok(super::Solution::Radiosity(Arc::new(solution)))
     }
 
@@ -185,21 +194,6 @@ impl Integrator for Radiosity {
         let solution = RadiositySolution::from_bytes(bytes)?;
         Ok(super::Solution::Radiosity(Arc::new(solution)))
     }
-}
-
-/// The light of all surfaces, whatever the camera.
-#[derive(Debug)]
-pub struct RadiositySolution {
-    mesh: Mesh,
-    vertices: Vertices,
-    /// Whether its faces are those of the scene, once somebody has seen to that.
-    fits: OnceLock<bool>,
-    /// Patches into which surfaces are cut.
-    pub patches: u64,
-    /// Part of all light that was still to be sent when the solver ended.
-    pub residual: f64,
-    /// Whether that is as little as it was to be: not so where nothing is ever lost.
-    pub is_converged: bool,
 }
 
 /// Patches with their light.
@@ -228,6 +222,7 @@ impl Radiosity {
         &self,
         scene: &Scene,
         context: &RenderContext<'_>,
+        early: &mut dyn FnMut(&dyn Fn() -> super::Solution),
     ) -> Result<RadiositySolution, RenderError> {
         let carrier = Carrier {
             scene,
@@ -236,7 +231,7 @@ impl Radiosity {
         };
         let sources = Sources::new(scene);
         let mut mesh = self.mesh(scene)?;
-        let sent = self.solve_patches(&mesh, &carrier, &sources, context)?;
+        let sent = self.solve_patches(&mesh, (&carrier, &sources), context, early)?;
         let irradiance = self.elements(&mut mesh, &sent, (&carrier, &sources), context);
         if context.cancel.is_cancelled() {
             return Err(RenderError::Cancelled { partial: None });
@@ -267,9 +262,9 @@ impl Radiosity {
     fn solve_patches(
         &self,
         mesh: &Mesh,
-        carrier: &Carrier<'_>,
-        sources: &Sources<'_>,
+        (carrier, sources): (&Carrier<'_>, &Sources<'_>),
         context: &RenderContext<'_>,
+        early: &mut dyn FnMut(&dyn Fn() -> super::Solution),
     ) -> Result<Sent, RenderError> {
         let patches = self.lighting(mesh, (carrier, sources), context).patches();
         let solver = self.solver_for(&patches)?;
@@ -277,9 +272,7 @@ impl Radiosity {
             Solver::Gather => {
                 let factors = self.factors(mesh, carrier, context.seed);
                 let rows = gathered_rows(&*factors, &patches, mesh, context);
-                gather::solve(&patches, &rows, TOLERANCE, |_| {
-                    !context.cancel.is_cancelled()
-                })
+                gather::solve(&patches, &rows, TOLERANCE, |left| tell(context, left))
             }
             Solver::Shoot => {
                 let shots = shoot::Shots {
@@ -287,7 +280,14 @@ impl Radiosity {
                     nodes: &mesh.patches,
                     room: self.memory / 4,
                 };
-                shoot::solve(&patches, &shots, TOLERANCE, |left| tell(context, left))
+                let size = size_of_scene(carrier.scene);
+                shoot::solve_showing(&patches, &shots, TOLERANCE, |left, so_far| {
+                    early(&|| {
+                        let shown = RadiositySolution::early(mesh, &patches, &so_far(), size);
+                        super::Solution::Radiosity(Arc::new(shown))
+                    });
+                    tell(context, left)
+                })
             }
             Solver::Stochastic => {
                 let n_sides = sides_needed(&patches);
@@ -392,15 +392,11 @@ impl Radiosity {
                 .map(light)
                 .collect()
         };
-        let mut irradiance = vec![[Rgb::BLACK; 2]; mesh.nodes.len()];
-        if solution.is_shot && patches.len() <= FEW_PATCHES {
-            irradiance = gathered(mesh, 0);
+        let mut irradiance = if solution.is_shot && patches.len() <= FEW_PATCHES {
+            gathered(mesh, 0)
         } else {
-            for (at, (patch, node)) in patches.iter().zip(&mesh.patches).enumerate() {
-                irradiance[*node as usize] =
-                    [0, 1].map(|side| solved.irradiance[2 * at + side] + patch.sides[side].stray);
-            }
-        }
+            of_patches(mesh, patches, solved)
+        };
         let refinement = Refinement {
             threshold: self.subdivision_threshold,
             depth: self.subdivision_depth,
@@ -430,28 +426,6 @@ impl Radiosity {
             None => Ok(Solver::Gather),
         }
     }
-}
-
-/// The light of each patch that differences on it are compared with: irradiance of its brighter side, direct light included, mean
-/// over channels, but at least a part of the mean of all; W/m².
-fn light_of(patches: &[Patch], solved: &Solved) -> Vec<f64> {
-    let light = |(at, patch): (usize, &Patch)| {
-        let side = |side: usize| {
-            let total = patch.sides[side].source + solved.irradiance[2 * at + side];
-            total.mean()
-        };
-        side(0).max(side(1))
-    };
-    let mut all: Vec<f64> = patches.iter().enumerate().map(light).collect();
-    let areas = patches.iter().map(|patch| patch.area);
-    let sum: f64 = all
-        .iter()
-        .zip(areas.clone())
-        .map(|(light, area)| light * area)
-        .sum();
-    let least = DARKEST * sum / areas.sum::<f64>();
-    all.iter_mut().for_each(|light| *light = light.max(least));
-    all
 }
 
 /// Sides of patches on which light does anything.

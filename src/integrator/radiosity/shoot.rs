@@ -23,11 +23,22 @@ pub(super) struct Shots<'a> {
 
 /// Solves until less than the part `tolerance` of all light is left to shoot; `go_on` is told that part after each salvo and says
 /// whether to go on. What is left then is spread evenly over all patches.
+#[cfg(test)]
 pub(super) fn solve(
     patches: &[Patch],
     shots: &Shots<'_>,
     tolerance: f64,
     mut go_on: impl FnMut(f64) -> bool,
+) -> Solved {
+    solve_showing(patches, shots, tolerance, |left, _| go_on(left))
+}
+
+/// The same; `go_on` may also ask for what there is so far, with what is left spread evenly over all patches.
+pub(super) fn solve_showing(
+    patches: &[Patch],
+    shots: &Shots<'_>,
+    tolerance: f64,
+    mut go_on: impl FnMut(f64, &dyn Fn() -> Solved) -> bool,
 ) -> Solved {
     let mut unshot = first_sent(patches);
     let all = power(patches, &unshot);
@@ -66,7 +77,12 @@ pub(super) fn solve(
         }
         solved.residual = power(patches, &unshot) / all;
         solved.is_converged = solved.residual <= goal;
-        if !go_on(solved.residual) {
+        let so_far = || {
+            let mut so_far = solved.clone();
+            add_ambient(patches, &unshot, &mut so_far);
+            so_far
+        };
+        if !go_on(solved.residual, &so_far) {
             break;
         }
     }
