@@ -5,8 +5,9 @@
 //! Most searches are for points on one surface: they leave out the cells that its tangent plane does not pass. Cells of a block of
 //! 4 × 4 × 4 lie together in memory.
 //!
-//! A fixed radius asks for no tree: `light.md` §0.3 measured 7 million searches per second for such a grid against 0.8 million of
-//! a k-d tree (kiddo 6.3, two cores, 80 photons found), and coincident points are nothing special to it.
+//! A fixed radius asks for no tree: `cargo bench --bench photon` counts 1.6 to 2.3 times as many searches per second as with a k-d tree
+//! (kiddo 6.3; 2.3 million photons of a box, 43 to 2600 of them found, 0.91 to 0.15 million searches per second on two threads without
+//! the help of a plane), and coincident points are nothing special to it.
 
 use crate::math::rng;
 use crate::math::tolerance::CELL_SLACK;
