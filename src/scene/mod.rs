@@ -321,7 +321,7 @@ fn check_light(description: &SceneDescription) -> Result<(), SceneError> {
 
 /// What a plan has in common with a world that is there.
 struct Known<'w> {
-    /// By planned group, see [`Scene::prototypes`].
+    /// By planned group: of those that refer to no others, the root left out.
     digests: Vec<Option<u64>>,
     /// The group with the same shapes.
     kept: Vec<Option<&'w Group>>,
