@@ -802,12 +802,51 @@ fn light_that_a_picture_lacks_is_told_and_kept_in_the_report() {
     assert_eq!(message.matches(told).count(), 1, "{message}");
     let warnings = warnings.as_array().unwrap();
     assert!(warnings.len() == 1 && warnings[0].as_str().unwrap().starts_with(told));
+    let radiosity = "radiosity --hemicube-pixels 2 --subdivision-depth 0";
+    let (message, _) = look(&lit_floor(glass), radiosity);
+    assert!(
+        message.contains(told) && message.contains("`radiosity` does not find"),
+        "{message}"
+    );
     // Without glass nothing is missing; photons find what comes through it.
     for (model, renderer) in [(lit_floor(""), "path"), (lit_floor(glass), "photon")] {
         let (message, warnings) = look(&model, renderer);
         assert!(!message.contains("is missing"), "{renderer}\n{message}");
         assert_eq!(warnings, serde_json::json!([]), "{renderer}");
     }
+}
+
+/// C-18: a closed room in which no light is lost has no solution, which is said with what is missing.
+#[test]
+fn a_room_without_a_solution_is_told() {
+    let look = |brightness: &str| {
+        let bench = Bench::new(&format!(
+            "protected void init() [ Axiom ==> [ Box(2, 2, 2).(setShader(new RGBAShader({brightness}))) ]\n\
+             [ Translate(0, 0, 1) LightNode().(setLight(new PointLight().(setPower(100)))) ]; ]\n"
+        ));
+        let line = "render m.rgg -o m.png --size 8x8 --samples 1 --renderer radiosity --hemicube-pixels 2 --subdivision-depth 0";
+        let output = bench.run(&format!("{line} --report r.json"));
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let report: serde_json::Value =
+            serde_json::from_slice(&bytes(&bench.path("r.json"))).unwrap();
+        (
+            text(&output.stderr),
+            report["solver_residual"].as_f64().unwrap(),
+        )
+    };
+    let told = "radiosity did not converge";
+    let (message, residual) = look("1, 1, 1");
+    assert!(
+        message.contains(told) && residual > 0.01,
+        "{residual}\n{message}"
+    );
+    assert!(
+        message.contains(&format!("{:.2} % of all light", 100.0 * residual)),
+        "{message}"
+    );
+    let (message, residual) = look("0.9, 0.9, 0.9");
+    assert!(!message.contains(told), "{message}");
+    assert!(residual > 0.0 && residual <= 1e-3, "{residual}");
 }
 
 #[test]

@@ -251,3 +251,9 @@ pub const ABOVE_SURFACE: f64 = 1e-6;
 /// Places are known to `f64`, so only grids of more than 10⁶ cells along an axis come near it; those that cannot tell cells apart search
 /// all. Used by [`crate::integrator::photon_map::grid`].
 pub const CELL_SLACK: f64 = 1e-9;
+
+/// How far beyond a polygon, in pixels, the middle of a pixel of a hemicube may lie that still shows it.
+///
+/// Corners are projected with errors of some 10⁻¹³ pixels; the middle of a pixel on the edge between two walls must not miss both. What
+/// it shows then is right to that part of a pixel. Used by [`crate::integrator::radiosity`].
+pub const PIXEL_SLACK: f64 = 1e-9;

@@ -9,6 +9,7 @@ use super::store::SolutionTarget;
 use super::studio::{Keep, Run, Studio};
 use super::viewing::Viewing;
 use super::world::{Entry, World};
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::integrator::Solution;
 use crate::options::value::Renderer;
 use crate::options::{Options, Stage};
@@ -143,11 +144,33 @@ impl Studio<'_> {
         let solution = self
             .seconds
             .time(world, Phase::Prepare, || viewing.solve(scene, early))?;
+        if let Solution::Radiosity(solved) = &solution
+            && !solved.is_converged
+        {
+            viewing
+                .audience
+                .warned(&run.sources.map, &unfinished(solved.residual));
+        }
         if self.keep == Keep::All {
             self.solution = key.map(|key| (key, solution.clone()));
         }
         Ok((solution, SolutionOrigin::Made))
     }
+}
+
+/// Tells that a solver gave up while this part of all light was still to come.
+fn unfinished(residual: f64) -> Diagnostics {
+    let text = format!(
+        "radiosity did not converge: {:.2} % of all light was still to be sent when the solver gave up",
+        100.0 * residual
+    );
+    let hint = "surfaces that lose no light (white on all sides of a closed room) have no solution: make them darker";
+    let mut found = Diagnostics::default();
+    found.push(Diagnostic {
+        primary: None,
+        ..Diagnostic::warning("not-converged", Span::default(), text).hint(hint)
+    });
+    found
 }
 
 /// The solution in a file.

@@ -146,7 +146,13 @@ impl FormFactors for NearForms<'_, '_> {
 /// A cell as a polygon if it is one.
 fn flat(mesh: &Mesh, node: u32) -> Option<Flat> {
     let cell = &mesh.nodes[node as usize].cell;
-    let chart = &mesh.charts[cell.chart as usize].chart;
+    let placed = &mesh.charts[cell.chart as usize];
+    let chart = &placed.chart;
+    let end = cell.origin + cell.size;
+    // The cells at the rim of a plane stand for all that lies beyond.
+    if placed.is_plane() && (cell.origin.min_element() <= 0.0 || end.max_element() >= 1.0) {
+        return None;
+    }
     if !matches!(chart.form, Form::Triangle | Form::Parallelogram) {
         return None;
     }

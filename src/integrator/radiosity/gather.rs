@@ -2,7 +2,8 @@
 //!
 //! Gauss and Seidel's method, which counts a patch's new light at once. Its error falls with each sweep at least by the largest
 //! reflectance ([`CohenWallace1993`, §5.3](crate::references#cohenwallace1993)). In white rooms that is slow, and changes soon shrink
-//! by the same factor each time: now and then all that is still to come is then added at once, as a geometric series.
+//! by the same factor each time: now and then all that is still to come is then added at once, as a geometric series. That factor,
+//! not the whitest surface, also tells how much is still to come: a single white patch would let it go on without end.
 
 use super::system::{Patch, Row, Solved, first_sent, power, sent, whitest};
 use crate::color::Rgb;
@@ -14,8 +15,8 @@ const MOST_SWEEPS: u32 = 5000;
 const STRIDE: u32 = 10;
 const STEADY: f64 = 0.1;
 
-/// Solves until a sweep changes so little that less than the part `tolerance` of all light is still to come; `go_on` is told the
-/// residual after each sweep and says whether to go on.
+/// Solves until a sweep changes so little that less than the part `tolerance` of all light is still to come; `go_on` is told that
+/// part after each sweep and says whether to go on.
 pub(super) fn solve(
     patches: &[Patch],
     rows: &[Row],
@@ -28,8 +29,8 @@ pub(super) fn solve(
         residual: 0.0,
         is_converged: power(patches, &first_sent(patches)) == 0.0,
     };
-    let lost = 1.0 - whitest(patches);
-    let (mut before, mut last_ratio) = (0.0, 0.0);
+    let whitest = whitest(patches);
+    let (mut before, mut last_ratio, mut summed_ratio) = (0.0, 0.0, 0.0_f64);
     for nth in 1..=MOST_SWEEPS {
         if solved.is_converged {
             break;
@@ -40,17 +41,29 @@ pub(super) fn solve(
             Vec::new()
         };
         let change = sweep(patches, rows, &mut solved);
-        let ratio = change / before;
+        let ratio = if before > 0.0 {
+            change / before
+        } else {
+            whitest
+        };
         let is_steady = (ratio - last_ratio).abs() < STEADY * (1.0 - ratio);
+        // What a sweep changes is followed by changes that get smaller by this factor each time, at most that of the whitest surface.
+        // A sweep after a sum of the series seems better than those that follow.
+        let slowest = ratio.max(last_ratio).max(summed_ratio).min(whitest);
         (before, last_ratio) = (change, ratio);
         let all = power(patches, &solved.radiosity);
-        solved.residual = change / all;
-        // What a sweep changes is followed by changes that get smaller by the whitest reflectance each time.
-        solved.is_converged = change <= tolerance * lost * all;
+        let to_come = if slowest < 1.0 {
+            change * slowest / (1.0 - slowest)
+        } else {
+            all
+        };
+        solved.residual = to_come.min(all) / all;
+        solved.is_converged = change == 0.0 || solved.residual <= tolerance;
         if !go_on(solved.residual) {
             break;
         }
         if is_steady && !old.is_empty() && !solved.is_converged {
+            summed_ratio = ratio;
             for (now, old) in solved.radiosity.iter_mut().zip(old) {
                 let next = *now + (*now - old) * (ratio / (1.0 - ratio));
                 *now = next.map(|c| c.max(0.0));
@@ -72,7 +85,7 @@ fn sweep(patches: &[Patch], rows: &[Row], solved: &mut Solved) -> f64 {
         for to in [side, side ^ 1] {
             let total = |at: usize| patch.sides[at % 2].source + solved.irradiance[at];
             let now = sent(patches, to, total);
-            change += patch.area * (now - solved.radiosity[to]).map(f64::abs).sum();
+            change += patch.weight * (now - solved.radiosity[to]).map(f64::abs).sum();
             solved.radiosity[to] = now;
         }
     }

@@ -18,7 +18,7 @@ use crate::integrator::carrier::Carrier;
 use crate::material::Transport;
 use crate::math::frame::Frame;
 use crate::math::rng;
-use crate::math::tolerance::{HEMICUBE_HORIZON, HEMICUBE_NEAR};
+use crate::math::tolerance::{HEMICUBE_HORIZON, HEMICUBE_NEAR, PIXEL_SLACK};
 use crate::sampler::{Sampler, SamplerKind};
 use crate::scene::SurfacePoint;
 use glam::{DVec2, DVec3};
@@ -205,15 +205,22 @@ impl<'a, 's> Hemicubes<'a, 's> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
                 (low.min(p.y), high.max(p.y))
             });
+        // Middles that lie on an edge that two share belong to both: roundings must not make them belong to none.
+        // Just within its ends a polygon is as wide as there: at the very end, of an edge that is not quite level, only a corner is met.
+        let inset = (PIXEL_SLACK * face.height()).min(0.5 * (high - low));
         let row = |y: f64| (y - face.lowest) / face.height() - 0.5;
-        let last = (row(high).floor()).min(face.rows as f64 - 1.0);
-        let mut y = row(low).ceil().max(0.0);
+        let last = (row(high) + PIXEL_SLACK)
+            .floor()
+            .min(face.rows as f64 - 1.0);
+        let mut y = (row(low) - PIXEL_SLACK).ceil().max(0.0);
         while y <= last {
             let middle = face.lowest + (y + 0.5) * face.height();
-            let (left, right) = span(&flat, middle);
+            let (left, right) = span(&flat, middle.max(low + inset).min(high - inset));
             let column = |x: f64| (x + 1.0) * 0.5 * self.pixels as f64 - 0.5;
-            let end = column(right).floor().min(self.pixels as f64 - 1.0);
-            let mut x = column(left).ceil().max(0.0);
+            let end = (column(right) + PIXEL_SLACK)
+                .floor()
+                .min(self.pixels as f64 - 1.0);
+            let mut x = (column(left) - PIXEL_SLACK).ceil().max(0.0);
             while x <= end {
                 let at = y as usize * self.pixels + x as usize;
                 let plane = face.pixel(at, self.pixels);
@@ -430,13 +437,20 @@ fn clip(corners: &[DVec3], lowest: f64, near: f64) -> Vec<DVec3> {
     polygon
 }
 
-/// Where a horizontal line enters and leaves a convex polygon.
+/// Where a horizontal line that meets a convex polygon, rim included, enters and leaves it.
 fn span(polygon: &[DVec2], y: f64) -> (f64, f64) {
     let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
     for (k, a) in polygon.iter().enumerate() {
         let b = polygon[(k + 1) % polygon.len()];
-        if (a.y <= y) != (b.y <= y) {
-            let x = a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y));
+        if y < a.y.min(b.y) || y > a.y.max(b.y) {
+            continue;
+        }
+        let ends = if a.y == b.y {
+            [a.x, b.x]
+        } else {
+            [a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)); 2]
+        };
+        for x in ends {
             (left, right) = (left.min(x), right.max(x));
         }
     }

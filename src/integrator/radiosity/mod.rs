@@ -43,6 +43,7 @@ mod view;
 
 use super::carrier::Carrier;
 use super::medium::Bodies;
+use super::requirements::has_focused_light;
 use super::sources::Sources;
 use super::viewer::Viewer;
 use super::{Integrator, Progress, RadianceEstimator, RenderContext, RenderError};
@@ -50,7 +51,6 @@ use crate::color::Rgb;
 use crate::math::functions::ln;
 use crate::scene::Scene;
 use analytic::NearForms;
-
 use hemicube::Hemicubes;
 use mesh::{Mesh, NONE};
 use rayon::prelude::*;
@@ -193,6 +193,13 @@ impl Integrator for Radiosity {
     fn restore(&self, bytes: &[u8]) -> Result<super::Solution, super::Unreadable> {
         let solution = RadiositySolution::from_bytes(bytes)?;
         Ok(super::Solution::Radiosity(Arc::new(solution)))
+    }
+
+    fn shortcomings(&self, scene: &Scene) -> Vec<&'static str> {
+        let focused = "light that smooth curved glass throws onto other surfaces is missing: `radiosity` does not find \
+                       light of a point, spot or parallel light or of the sun behind glass that bends it";
+        let lacks = has_focused_light(scene);
+        lacks.then_some(focused).into_iter().collect()
     }
 }
 

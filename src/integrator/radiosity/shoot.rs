@@ -3,7 +3,7 @@
 //! Progressive refinement ([`CohenChen1988`](crate::references#cohenchen1988)), a few patches at a time. A row tells what its patch gives
 //! as well as what it gets: A F is the same both ways.
 
-use super::system::{FormFactors, Patch, Row, Solved, first_sent, power, sent, whitest};
+use super::system::{FormFactors, Patch, Row, Solved, first_sent, power, sent};
 use crate::color::Rgb;
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 const SALVO: usize = 32;
 
 /// Shots per patch after which no end is in sight.
-const MOST_SHOTS: usize = 200;
+const MOST_SHOTS: usize = 2000;
 
 /// The factors that shots go by: kept once they are known, as long as there is room.
 pub(super) struct Shots<'a> {
@@ -48,7 +48,6 @@ pub(super) fn solve_showing(
         residual: if all > 0.0 { 1.0 } else { 0.0 },
         is_converged: all == 0.0,
     };
-    let goal = tolerance * (1.0 - whitest(patches));
     let mut kept: Vec<Option<Row>> = vec![None; unshot.len()];
     let mut room = shots.room;
     for _ in 0..(MOST_SHOTS * patches.len()).div_ceil(SALVO) {
@@ -75,8 +74,9 @@ pub(super) fn solve_showing(
                 kept[side] = Some(row);
             }
         }
+        // Much the same part of what is left comes back again and again as of all light: it is this part of the whole.
         solved.residual = power(patches, &unshot) / all;
-        solved.is_converged = solved.residual <= goal;
+        solved.is_converged = solved.residual <= tolerance;
         let so_far = || {
             let mut so_far = solved.clone();
             add_ambient(patches, &unshot, &mut so_far);
@@ -92,7 +92,7 @@ pub(super) fn solve_showing(
 
 /// The sides with the most power to give, the strongest first.
 fn brightest(patches: &[Patch], unshot: &[Rgb]) -> Vec<usize> {
-    let strength = |side: usize| patches[side / 2].area * unshot[side].sum();
+    let strength = |side: usize| patches[side / 2].weight * unshot[side].sum();
     let mut sides: Vec<usize> = (0..unshot.len())
         .filter(|side| strength(*side) > 0.0)
         .collect();

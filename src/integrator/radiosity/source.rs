@@ -21,8 +21,12 @@ use std::f64::consts::PI;
 const DIRECT: u64 = 0x6469_7265;
 const STRAY: u64 = 0x7374_7261;
 
-/// Points of a cell at which light sources are asked.
-const LIGHT_POINTS: u32 = 16;
+/// Points of a cell at which light sources are asked: of few patches each at more, so that all together are asked this often.
+const LIGHT_POINTS: std::ops::RangeInclusive<usize> = 16..=1024;
+const LIGHT_POINTS_OF_ALL: usize = 1 << 14;
+
+/// How many times as much as the mean of other patches a patch counts at most.
+const LARGEST_WEIGHT: f64 = 4.0;
 
 /// Points along each side of a cell at which pictures on it are looked at.
 const PICTURE_POINTS: u32 = 8;
@@ -65,6 +69,7 @@ pub(super) fn has_stray_light(carrier: &Carrier<'_>, sources: &Sources<'_>) -> b
 impl Lighting<'_, '_> {
     /// All patches, with what light sources give them.
     pub(super) fn patches(&self) -> Vec<Patch> {
+        let most = self.largest_weight();
         let patch = |node: &u32| {
             let at = &self.mesh.nodes[*node as usize];
             let optics = self.optics(at);
@@ -82,10 +87,26 @@ impl Lighting<'_, '_> {
             });
             Patch {
                 area: at.area,
+                weight: at.area.min(most),
                 sides,
             }
         };
         self.mesh.patches.par_iter().map(patch).collect()
+    }
+
+    /// The area with which a cell of a plane counts at most: some times the mean of the patches of all else.
+    fn largest_weight(&self) -> f64 {
+        let nodes = self.mesh.patches.iter();
+        let nodes = nodes.map(|node| &self.mesh.nodes[*node as usize]);
+        let is_plane = |node: &&Node| self.mesh.charts[node.cell.chart as usize].is_plane();
+        let (n, sum) = nodes
+            .filter(|node| !is_plane(node))
+            .fold((0.0, 0.0), |(n, sum), node| (n + 1.0, sum + node.area));
+        if n > 0.0 {
+            LARGEST_WEIGHT * sum / n
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// What the matt part of a cell does, mean over the cell.
@@ -120,7 +141,9 @@ impl Lighting<'_, '_> {
         let cell = &self.mesh.nodes[node as usize].cell;
         let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
         let mut rays = RayCounts::default();
-        for index in 0..LIGHT_POINTS {
+        let n_points = (LIGHT_POINTS_OF_ALL / self.mesh.patches.len().max(1))
+            .clamp(*LIGHT_POINTS.start(), *LIGHT_POINTS.end());
+        for index in 0..n_points as u32 {
             let mut sampler = Sampler::new(SamplerKind::OwenSobol, stream, index);
             let at = sampler.point(Use::Direction);
             let at = cell_point(self.mesh, self.carrier, cell, side, at);

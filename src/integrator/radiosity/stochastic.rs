@@ -5,7 +5,7 @@
 //! grows with the number of patches only as a ray's does. For plants, whose leaves are many and small.
 
 use super::rays::{CosineRays, cell_point, cosine_ray};
-use super::system::{Patch, Solved, first_sent, power, sent, whitest};
+use super::system::{Patch, Solved, first_sent, power, sent};
 use crate::color::Rgb;
 use crate::integrator::RayCounts;
 use crate::material::Transport;
@@ -18,6 +18,12 @@ const SHOTS: u64 = 0x7368_6f74;
 
 /// Iterations after which no end is in sight.
 const MOST_ITERATIONS: u64 = 5000;
+
+/// Part of the rays that tells how to share out the others.
+const PILOT: f64 = 1.0 / 16.0;
+
+/// Part of the rays that the first iteration has at least.
+const LEAST_SHARE: f64 = 1.0 / 64.0;
 
 /// Sides whose rays are followed before what they found is added up: what bounds memory.
 const BLOCK: usize = 1 << 14;
@@ -39,38 +45,44 @@ pub(super) fn solve(
         residual: if all > 0.0 { 1.0 } else { 0.0 },
         is_converged: all == 0.0,
     };
-    let lost = 1.0 - whitest(patches);
-    // At most so much light will ever be shot: the rays are shared out over it.
-    let ever = all / lost.max(1.0 / 64.0);
+    let (mut shot, mut thrown) = (0.0, 0.0);
+    if all > 0.0 {
+        // A few rays tell how much of what is shot comes back.
+        let n = (n_rays as f64 * PILOT).ceil();
+        let gained = shoot_all(patches, shots, &unshot, (all / n, MOST_ITERATIONS));
+        (shot, thrown) = (all, power(patches, &thrown_by(patches, &gained)));
+    }
     for iteration in 0..MOST_ITERATIONS {
         if solved.is_converged {
             break;
         }
         let left = power(patches, &unshot);
+        // Rays are shared out over all that will ever be shot.
+        let ever = all / (1.0 - thrown / shot).clamp(LEAST_SHARE, 1.0);
         let n = (n_rays as f64 * left / ever).ceil().max(1.0);
         let gained = shoot_all(patches, shots, &unshot, (left / n, iteration));
-        unshot.fill(Rgb::BLACK);
-        for (side, gained) in gained.into_iter().enumerate() {
+        unshot = thrown_by(patches, &gained);
+        for (side, (gained, thrown)) in gained.into_iter().zip(&unshot).enumerate() {
             solved.irradiance[side] += gained;
-            for to in [side, side ^ 1] {
-                let thrown = sent(
-                    patches,
-                    to,
-                    |at| {
-                        if at == side { gained } else { Rgb::BLACK }
-                    },
-                );
-                unshot[to] += thrown;
-                solved.radiosity[to] += thrown;
-            }
+            solved.radiosity[side] += *thrown;
         }
-        solved.residual = power(patches, &unshot) / all;
-        solved.is_converged = solved.residual <= tolerance * lost;
+        let next = power(patches, &unshot);
+        (shot, thrown) = (shot + left, thrown + next);
+        // Much the same part of what is left comes back again and again as of all light: it is this part of the whole.
+        solved.residual = next / all;
+        solved.is_converged = solved.residual <= tolerance;
         if !go_on(solved.residual) {
             break;
         }
     }
     solved
+}
+
+/// What all sides send out when they have gained so much.
+fn thrown_by(patches: &[Patch], gained: &[Rgb]) -> Vec<Rgb> {
+    let each = 0..gained.len();
+    each.map(|side| sent(patches, side, |at| gained[at]))
+        .collect()
 }
 
 /// A side and its rays.
@@ -93,7 +105,8 @@ fn shoot_all(
     let start = rng::unit_f64(rng::hash(&[shots.seed, SHOTS, iteration]));
     let (mut sum, mut dealt) = (start, 0.0);
     for (side, sent) in unshot.iter().enumerate() {
-        let total = patches[side / 2].area * sent.sum();
+        let patch = &patches[side / 2];
+        let total = patch.weight * sent.sum();
         sum += total / per_ray;
         let n = (sum.floor() - dealt).max(0.0);
         dealt += n;
@@ -101,7 +114,7 @@ fn shoot_all(
             shooters.push(Shooter {
                 side,
                 n: n as u32,
-                power: *sent * (per_ray / sent.sum()),
+                power: *sent * (patch.area * per_ray / total),
             });
         }
     }

@@ -27,10 +27,14 @@ impl PatchSide {
     }
 }
 
-/// A patch: its area in m² and its front and back.
+/// A patch: its front and back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Patch {
+    /// m².
     pub(super) area: f64,
+    /// The area that it counts with where solvers decide what is worth their while, m²: cells of an endless plane are huge, and all
+    /// else would be lost in their light.
+    pub(super) weight: f64,
     pub(super) sides: [PatchSide; 2],
 }
 
@@ -123,10 +127,10 @@ pub(super) fn first_sent(patches: &[Patch]) -> Vec<Rgb> {
         .collect()
 }
 
-/// Σ of area times what is sent, over channels.
+/// Σ of weight times what is sent, over channels: power, but for endless planes.
 pub(super) fn power(patches: &[Patch], sent: &[Rgb]) -> f64 {
     let each = sent.iter().enumerate();
-    each.map(|(side, sent)| patches[side / 2].area * sent.sum())
+    each.map(|(side, sent)| patches[side / 2].weight * sent.sum())
         .sum()
 }
 

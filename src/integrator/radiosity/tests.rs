@@ -1,5 +1,8 @@
 //! Tests of the parts of radiosity against what is known on paper.
 
+mod enclosures;
+mod factors;
+
 use super::*;
 use crate::geometry::Shape;
 use crate::integrator::CancelToken;
@@ -16,13 +19,35 @@ pub(super) struct Laid<'s> {
 
 impl<'s> Laid<'s> {
     pub(super) fn new(scene: &'s Scene) -> Self {
+        Self::cut(scene, 1 << 20)
+    }
+
+    /// With at most about so many patches.
+    pub(super) fn cut(scene: &'s Scene, most: u64) -> Self {
         Self {
             carrier: Carrier {
                 scene,
                 bodies: Bodies::new(scene),
                 max_depth: 8,
             },
-            mesh: Mesh::new(scene, 1 << 20).unwrap(),
+            mesh: Mesh::new(scene, most).unwrap(),
+        }
+    }
+
+    /// A back end, with so many rays a row or pixels along a cube.
+    pub(super) fn factors(
+        &self,
+        method: FormFactorMethod,
+        n_rays: u32,
+        pixels: u32,
+    ) -> Box<dyn FormFactors + '_> {
+        match method {
+            FormFactorMethod::Rays => Box::new(self.rays(n_rays)),
+            FormFactorMethod::Hemicube => {
+                let (mesh, carrier) = (&self.mesh, &self.carrier);
+                Box::new(Hemicubes::new(mesh, carrier, 1, pixels, CUBES, None))
+            }
+            FormFactorMethod::Analytic => Box::new(NearForms::new(self.rays(n_rays))),
         }
     }
 
@@ -46,6 +71,7 @@ impl<'s> Laid<'s> {
         nodes
             .map(|node| Patch {
                 area: self.mesh.nodes[*node as usize].area,
+                weight: self.mesh.nodes[*node as usize].area,
                 sides: [front(*node), PatchSide::default()],
             })
             .collect()
@@ -143,27 +169,24 @@ fn a_room_that_loses_nothing_is_told() {
     let patches = laid.patches(1.0, |_| 1.0);
     let rays = laid.rays(1);
     let rows = laid.rows(&rays, &patches);
-    let mut left = 100;
-    let mut few = |_| {
-        left -= 1;
-        left > 0
+    let left = std::cell::Cell::new(0);
+    let few = |_| {
+        left.set(left.get() - 1);
+        left.get() > 0
     };
-    let gathered = gather::solve(&patches, &rows, 1e-3, &mut few);
-    left = 100;
+    left.set(100);
+    let gathered = gather::solve(&patches, &rows, 1e-3, few);
     let shots = shoot::Shots {
         factors: &rays,
         nodes: &laid.mesh.patches,
         room: 1 << 30,
     };
-    let shot = {
-        let mut few = |_| {
-            left -= 1;
-            left > 0
-        };
-        shoot::solve(&patches, &shots, 1e-3, &mut few)
-    };
-    for solved in [gathered, shot] {
-        assert!(!solved.is_converged);
+    left.set(100);
+    let shot = shoot::solve(&patches, &shots, 1e-3, few);
+    left.set(100);
+    let thrown = stochastic::solve(&patches, &rays, 1 << 12, 1e-3, few);
+    for solved in [gathered, shot, thrown] {
+        assert!(!solved.is_converged && solved.residual > 0.1);
         let finite = |light: &Rgb| light.is_finite() && light.min_channel() >= 0.0;
         assert!(solved.irradiance.iter().all(finite));
     }
