@@ -387,3 +387,53 @@ fn stacks_of_leaves_reflect_what_they_should() {
     }
     assert_eq!(n_rows, 14);
 }
+
+/// Cells of endless ground are huge: solvers still go on until leaves above it have their light, and cells count little more than
+/// patches of leaves. Two leaves that face each other over bright ground have what two equations with two unknowns say.
+#[test]
+fn endless_ground_does_not_hide_what_stands_on_it() {
+    let rho = 0.9;
+    let patch = |area: f64, source: f64| Patch {
+        area,
+        weight: area.min(4.0),
+        sides: [
+            PatchSide {
+                reflectance: gray(rho),
+                source: gray(source),
+                ..PatchSide::default()
+            },
+            PatchSide::default(),
+        ],
+    };
+    let patches = [patch(1e9, 1.0), patch(1.0, 0.0), patch(1.0, 0.0)];
+    let row = |other: u32| Row::of(vec![(0, gray(0.5)), (other, gray(0.5))]);
+    let none = Row::default;
+    let rows = [none(), none(), row(4), none(), row(2), none()];
+    let solved = gather::solve(&patches, &rows, 1e-3, |_| true);
+    // H = (B + ρ H)/2 with B = ρ of the ground.
+    let expected = 0.5 * rho / (1.0 - 0.5 * rho);
+    for side in [2, 4] {
+        let found = solved.irradiance[side].g;
+        assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
+    }
+
+    let leaf = at(0.0, 0.0, 1.0);
+    let scene = Room::default()
+        .with(Shape::Plane, DAffine3::IDENTITY, Material::default())
+        .with(square(0.1), leaf, Material::default())
+        .scene()
+        .unwrap();
+    let laid = Laid::new(&scene);
+    let (sources, cancel) = (Sources::new(&scene), CancelToken::default());
+    let lighting = Lighting {
+        mesh: &laid.mesh,
+        carrier: &laid.carrier,
+        sources: &sources,
+        seed: 1,
+        n_stray: 0,
+        cancel: &cancel,
+    };
+    let patches = lighting.patches();
+    let largest = |of: fn(&Patch) -> f64| patches.iter().map(of).fold(0.0, f64::max);
+    assert!(largest(|patch| patch.area) > 1.0 && largest(|patch| patch.weight) < 1e-2);
+}
