@@ -437,3 +437,48 @@ fn endless_ground_does_not_hide_what_stands_on_it() {
     let largest = |of: fn(&Patch) -> f64| patches.iter().map(of).fold(0.0, f64::max);
     assert!(largest(|patch| patch.area) > 1.0 && largest(|patch| patch.weight) < 1e-2);
 }
+
+/// Rows that are known.
+struct Known(Vec<Row>);
+
+impl FormFactors for Known {
+    fn row(&self, node: u32, side: usize) -> Row {
+        self.0[2 * node as usize + side].clone()
+    }
+}
+
+/// C-20b: where patches differ in size shooting finds the same as gathering, by the same rows: what a large one shoots into a small
+/// one counts for more there.
+#[test]
+fn shooting_and_gathering_agree_between_large_and_small() {
+    let patch = |area: f64, source: f64| Patch {
+        area,
+        weight: area,
+        sides: [
+            PatchSide {
+                reflectance: gray(0.6),
+                source: gray(source),
+                ..PatchSide::default()
+            },
+            PatchSide::default(),
+        ],
+    };
+    let patches = [patch(1.0, 2.0), patch(8.0, 0.5)];
+    let rows = Known(vec![
+        Row::of(vec![(2, gray(0.8))]),
+        Row::default(),
+        Row::of(vec![(0, gray(0.1))]),
+        Row::default(),
+    ]);
+    let gathered = gather::solve(&patches, &rows.0, 1e-6, |_| true);
+    let shots = shoot::Shots {
+        factors: &rows,
+        nodes: &[0, 1],
+        room: 1 << 20,
+    };
+    let shot = shoot::solve(&patches, &shots, 1e-6, |_| true);
+    for side in [0, 2] {
+        let (found, expected) = (shot.irradiance[side].g, gathered.irradiance[side].g);
+        assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
+    }
+}
