@@ -21,9 +21,10 @@ use understory::film::LinearImage;
 const SIZE: usize = 128;
 const BLOCKS: [usize; 2] = [1, 4];
 
-/// Samples of each pixel of each reference, of a picture of photon mapping, and of the path tracer's own.
+/// Samples of each pixel of each reference, of a picture of photon mapping, of a quick one, and of the path tracer's own.
 const REFERENCE: u32 = 2048;
 const VIEW: u32 = 16;
+const QUICK: u32 = 4;
 const PATH: u32 = 400;
 
 /// Part of the blocks that are left out at the worst end: fireflies of references.
@@ -33,6 +34,7 @@ fn main() {
     let is_full = std::env::args().any(|argument| argument == "full");
     for scene in ["cornell", "two_spheres"] {
         let judge = Judge::new(scene);
+        judge.quick();
         judge.photons(is_full);
         judge.areas();
         judge.path();
@@ -54,6 +56,17 @@ impl Judge {
         }
     }
 
+    /// As few samples as will do, for many cameras.
+    fn quick(&self) {
+        println!("{}: {QUICK} samples, kernel chosen", self.scene);
+        for n in [100_000, 400_000] {
+            self.print(
+                &format!("{n}"),
+                &photon(self.scene, n / 2, (1, QUICK), "auto"),
+            );
+        }
+    }
+
     /// Over the number of photons, half of which are sent to mirrors and glass. The kernel is chosen.
     fn photons(&self, is_full: bool) {
         println!("{}: photons, kernel chosen", self.scene);
@@ -71,7 +84,7 @@ impl Judge {
             (6_400_000, 16),
         ] {
             if passes == 1 || is_full {
-                let drawn = photon(self.scene, n / 2, passes, "auto");
+                let drawn = photon(self.scene, n / 2, (passes, VIEW), "auto");
                 self.print(&format!("{}", n * passes), &drawn);
             }
         }
@@ -86,7 +99,7 @@ impl Judge {
         for area in [
             "0.0001", "0.0004", "0.0016", "0.0064", "0.0256", "0.1024", "0.4096",
         ] {
-            self.print(area, &photon(self.scene, 200_000, 1, area));
+            self.print(area, &photon(self.scene, 200_000, (1, VIEW), area));
         }
     }
 
@@ -161,8 +174,8 @@ fn path(scene: &str, samples: u32, seed: u32) -> Drawn {
 }
 
 /// So many photons to all surfaces and as many to mirrors and glass, in each of so many passes.
-fn photon(scene: &str, n: u64, passes: u64, area: &str) -> Drawn {
-    let [n, passes, samples] = [n.to_string(), passes.to_string(), VIEW.to_string()];
+fn photon(scene: &str, n: u64, (passes, samples): (u64, u32), area: &str) -> Drawn {
+    let [n, passes, samples] = [n.to_string(), passes.to_string(), samples.to_string()];
     let flags = [
         ("renderer", "photon"),
         ("samples", samples.as_str()),
