@@ -7,6 +7,7 @@ use super::shell::Shell;
 use crate::diag::render;
 use crate::growth::Growth;
 use crate::options::Command;
+use crate::options::value::Renderer;
 use crate::pipeline::budget;
 use crate::pipeline::exporting;
 use crate::pipeline::failure::Failure;
@@ -185,8 +186,12 @@ pub(super) fn run<T: Send>(
 
 /// A line about a picture that was written.
 pub(super) fn summary(path: &Path, run: &Run, studio: &Studio<'_>, made: &Made) -> String {
-    let error = match made.effort.relative_error {
-        Some(error) => format!(", estimated error {:.1} %", 100.0 * error),
+    let error = match made.effort.error {
+        Some(error) => format!(", estimated error {}", error.text()),
+        // Path tracing is what other methods are judged by.
+        None if run.options.renderer.value != Renderer::Path && made.is_whole => {
+            ", error unknown (light is focused that path tracing does not find)".into()
+        }
         None => String::new(),
     };
     let size = run.options.size.value;

@@ -7,7 +7,7 @@ use super::{Progress, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::camera::Camera;
 use crate::film::contrast::{self, PixelMask};
 use crate::film::filter::FilterSampler;
-use crate::film::{ErrorEstimate, Film, Filter, Tile};
+use crate::film::{ErrorEstimate, Film, Filter, Pixel, Tile};
 use crate::math::{Ray, rng};
 use crate::sampler::{Sampler, SamplerKind, Use};
 use glam::DVec2;
@@ -128,6 +128,57 @@ pub fn render_view(
     Ok(result)
 }
 
+/// A pixel of a picture that is looked at by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spot {
+    /// Its column.
+    pub x: u32,
+    /// Its row.
+    pub y: u32,
+    /// The samples that it has.
+    pub pixel: Pixel,
+}
+
+/// Adds the samples of this range to some pixels of a view alone: the same samples that [`render_view`] would give them.
+///
+/// # Errors
+/// [`RenderError::Cancelled`], without a picture, once the context is cancelled.
+pub fn render_spots(
+    estimator: &dyn RadianceEstimator,
+    camera: &Camera,
+    settings: &FilmSettings,
+    (spots, samples): (&mut [Spot], Range<u32>),
+    context: &RenderContext<'_>,
+) -> Result<RayCounts, RenderError> {
+    let n_each = u64::from(samples.end.saturating_sub(samples.start));
+    let pass = Pass {
+        estimator,
+        camera,
+        settings,
+        context,
+        filter: FilterSampler::new(settings.filter),
+        done: AtomicU64::new(0),
+        total: spots.len() as u64 * n_each,
+    };
+    let fill = |spot: &mut Spot| {
+        let mut rays = RayCounts::default();
+        pass.add(&mut spot.pixel, (spot.x, spot.y), &samples, &mut rays);
+        pass.tell(n_each);
+        rays
+    };
+    let rays = spots
+        .par_iter_mut()
+        .map(fill)
+        .reduce(RayCounts::default, |mut a, b| {
+            a += b;
+            a
+        });
+    if context.cancel.is_cancelled() {
+        return Err(RenderError::Cancelled { partial: None });
+    }
+    Ok(rays)
+}
+
 /// What all tiles of all passes share.
 struct Pass<'a> {
     estimator: &'a dyn RadianceEstimator,
@@ -164,26 +215,42 @@ impl Pass<'_> {
             if wanted.is_some_and(|mask| !mask.has(x, y)) {
                 continue;
             }
-            for sample in samples.clone() {
-                // A sample that gathers light over the hemisphere can take a millisecond.
-                if self.context.cancel.is_cancelled() {
-                    return rays;
-                }
-                let mut sampler = self.sampler(x, y, sample);
-                let ray = self.ray(x, y, &sampler);
-                let radiance = self
-                    .estimator
-                    .incident_radiance(&ray, &mut sampler, &mut rays);
-                pixel.add(sample, radiance);
+            self.add(pixel, (x, y), samples, &mut rays);
+            if self.context.cancel.is_cancelled() {
+                return rays;
             }
         }
-        let n_samples = tile.pixels.len() as u64 * u64::from(samples.end - samples.start);
+        self.tell(tile.pixels.len() as u64 * u64::from(samples.end - samples.start));
+        rays
+    }
+
+    /// Adds the samples of this range to the pixel in this column and row.
+    fn add(
+        &self,
+        pixel: &mut Pixel,
+        (x, y): (u32, u32),
+        samples: &Range<u32>,
+        rays: &mut RayCounts,
+    ) {
+        for sample in samples.clone() {
+            // A sample that gathers light over the hemisphere can take a millisecond.
+            if self.context.cancel.is_cancelled() {
+                return;
+            }
+            let mut sampler = self.sampler(x, y, sample);
+            let ray = self.ray(x, y, &sampler);
+            let radiance = self.estimator.incident_radiance(&ray, &mut sampler, rays);
+            pixel.add(sample, radiance);
+        }
+    }
+
+    /// Tells that so many more samples are done.
+    fn tell(&self, n_samples: u64) {
         let done = self.done.fetch_add(n_samples, Ordering::Relaxed) + n_samples;
         (self.context.progress)(Progress {
             done,
             total: self.total,
         });
-        rays
     }
 
     /// The sampler of one sample. The two halves of a pixel are scrambled independently.

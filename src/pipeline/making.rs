@@ -7,12 +7,14 @@ use super::failure::Failure;
 use super::report::{Effort, Phase, SolutionFacts};
 use super::store::PictureTarget;
 use super::studio::{Run, Studio};
-use super::viewing::Viewing;
+use super::viewing::{Shot, Viewing};
 use super::viewpoint;
 use super::world::World;
 use crate::animation::flicker::Flicker;
+use crate::camera::Camera;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::integrator::CancelToken;
+use crate::options::value::Renderer;
 use crate::scene::Scene;
 
 /// What came out of a run.
@@ -99,6 +101,30 @@ impl Making<'_> {
         warnings
     }
 
+    /// Finds out how wrong a picture is, by a method that is wrong in other ways than noise. Stopped meanwhile, the picture is as good
+    /// as it was; only how good is not known.
+    fn check(
+        &self,
+        studio: &mut Studio<'_>,
+        run: &Run,
+        (scene, camera): (&Scene, &Camera),
+        shot: &mut Shot,
+    ) -> Result<(), Failure> {
+        if run.options.renderer.value == Renderer::Path {
+            return Ok(());
+        }
+        shot.effort.error = None;
+        self.audience.begins("checking");
+        let viewing = self.viewing(run);
+        let check = || viewing.spot_check(scene, camera, shot);
+        match studio.seconds.time(self.world, Phase::Check, check) {
+            Ok(error) => shot.effort.error = error,
+            Err(Failure::Stopped) => {}
+            Err(failure) => return Err(failure),
+        }
+        Ok(())
+    }
+
     /// Makes the picture of a run. Stopped early, the picture is written with the samples so far.
     ///
     /// # Errors
@@ -124,9 +150,10 @@ impl Making<'_> {
         })?;
         self.audience.begins("rendering");
         studio.work.views += 1;
-        let shot = studio.seconds.time(self.world, Phase::Render, || {
+        let mut shot = studio.seconds.time(self.world, Phase::Render, || {
             viewing.shoot(&prepared, &camera)
         })?;
+        self.check(studio, run, (&scene, &camera), &mut shot)?;
         self.audience.ends();
 
         if !shot.is_whole && self.partial == Partial::Drop {

@@ -31,6 +31,7 @@ pub mod report;
 pub mod solution_file;
 pub mod solving;
 pub mod sources;
+pub mod spot_check;
 pub mod store;
 pub mod studio;
 pub mod surroundings;

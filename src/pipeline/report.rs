@@ -6,10 +6,14 @@ use super::studio::Run;
 use super::world::World;
 use crate::animation::flicker::Flicker;
 use crate::diag::SourceMap;
+use crate::film::ErrorEstimate;
 use crate::options::{Options, explain};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
+
+/// Distance of the ends of an interval that holds 95 % of a normal distribution from its middle, in standard deviations.
+pub(super) const Z_95: f64 = 1.959_964;
 
 /// Keys by which an earlier report is known when it is to be replaced.
 pub const REPORT_KEYS: &[&str] = &["version", "model_hash", "seconds", "image_hash"];
@@ -29,6 +33,8 @@ pub enum Phase {
     Prepare,
     /// Tracing light.
     Render,
+    /// Finding out how wrong the picture is.
+    Check,
     /// Encoding and writing.
     Write,
 }
@@ -48,6 +54,8 @@ pub struct PhaseSeconds {
     pub prepare: f64,
     /// See [`Phase::Render`].
     pub render: f64,
+    /// See [`Phase::Check`].
+    pub check: f64,
     /// See [`Phase::Write`].
     pub write: f64,
 }
@@ -62,6 +70,7 @@ impl PhaseSeconds {
             Phase::Accel => &mut self.accel,
             Phase::Prepare => &mut self.prepare,
             Phase::Render => &mut self.render,
+            Phase::Check => &mut self.check,
             Phase::Write => &mut self.write,
         };
         *total += time.as_secs_f64();
@@ -75,6 +84,7 @@ impl PhaseSeconds {
         self.accel += other.accel;
         self.prepare += other.prepare;
         self.render += other.render;
+        self.check += other.check;
         self.write += other.write;
     }
 
@@ -95,6 +105,7 @@ impl PhaseSeconds {
             ("accel", self.accel),
             ("prepare", self.prepare),
             ("render", self.render),
+            ("check", self.check),
             ("write", self.write),
         ];
         let noticeable = phases.iter().filter(|(_, seconds)| *seconds >= 0.005);
@@ -143,19 +154,75 @@ pub struct Effort {
     pub n_rays: u64,
     /// Samples in each pixel (the fewest, if not all have equally many).
     pub samples_per_pixel: u32,
-    /// Estimated relative error of the picture (the largest, of several); `None` if it cannot be told.
-    pub relative_error: Option<f64>,
+    /// Samples of all pixels together.
+    pub n_samples: u64,
+    /// Estimated error of the picture (the largest, of several); `None` if it cannot be told.
+    pub error: Option<PictureError>,
+}
+
+/// What an estimate of an error covers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub enum Covers {
+    /// The noise of the samples. All there is, of a method without bias.
+    #[default]
+    #[serde(rename = "noise")]
+    Noise,
+    /// Whatever is wrong with the picture: a [`spot_check`](super::spot_check).
+    #[serde(rename = "noise and bias")]
+    NoiseAndBias,
+}
+
+/// Estimated root mean square of the pixels' relative errors of luminance; 0.02 means "2 %".
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PictureError {
+    /// The estimate.
+    pub relative: f64,
+    /// The error is larger than this …
+    pub low: f64,
+    /// … and smaller than this, with 95 % probability.
+    pub high: f64,
+    /// What it covers.
+    pub covers: Covers,
+}
+
+impl PictureError {
+    /// The noise of a film.
+    pub fn of_noise(noise: &ErrorEstimate) -> Self {
+        let reach = Z_95 * noise.uncertainty;
+        Self {
+            relative: noise.relative,
+            low: (noise.relative - reach).max(0.0),
+            high: noise.relative + reach,
+            covers: Covers::Noise,
+        }
+    }
+
+    /// The estimate with its uncertainty and what it covers: `1.8 % ± 0.2 %, noise and bias`.
+    pub fn text(&self) -> String {
+        let covers = match self.covers {
+            Covers::Noise => "noise",
+            Covers::NoiseAndBias => "noise and bias",
+        };
+        let percent = |error: f64| format!("{:.1} %", 100.0 * error);
+        if self.low <= 0.0 && self.high > 0.0 {
+            return format!("below {}, {covers}", percent(self.high));
+        }
+        let reach = (self.high - self.relative).max(self.relative - self.low);
+        let (error, reach) = (percent(self.relative), percent(reach));
+        format!("{error} ± {reach}, {covers}")
+    }
 }
 
 impl Effort {
     /// This and another picture of the same film.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let both = self.relative_error.zip(other.relative_error);
+        let both = self.error.zip(other.error);
         Self {
             n_rays: self.n_rays + other.n_rays,
             samples_per_pixel: self.samples_per_pixel.min(other.samples_per_pixel),
-            relative_error: both.map(|(a, b)| a.max(b)),
+            n_samples: self.n_samples + other.n_samples,
+            error: both.map(|(a, b)| if a.relative < b.relative { b } else { a }),
         }
     }
 }
@@ -214,6 +281,10 @@ pub struct Report<'a> {
     /// No method of this version has a solver.
     solver_residual: Option<f64>,
     relative_error: Option<f64>,
+    /// What holds it with 95 % probability.
+    relative_error_interval: Option<[f64; 2]>,
+    /// What it covers: noise, or noise and bias.
+    relative_error_covers: Option<Covers>,
     peak_memory_bytes: Option<u64>,
     image_hash: String,
     /// How often each stage has run.
@@ -338,7 +409,9 @@ impl<'a> Report<'a> {
             photons_stored: None,
             patches: None,
             solver_residual: None,
-            relative_error: effort.relative_error,
+            relative_error: effort.error.map(|error| error.relative),
+            relative_error_interval: effort.error.map(|error| [error.low, error.high]),
+            relative_error_covers: effort.error.map(|error| error.covers),
             peak_memory_bytes: world.peak_memory(),
             image_hash: image.to_string(),
             work: Work::default(),
@@ -411,21 +484,31 @@ mod tests {
 
     #[test]
     fn the_error_of_a_film_is_that_of_its_worst_frame() {
+        let error = |relative: f64| PictureError {
+            relative,
+            low: relative - 0.01,
+            high: relative + 0.02,
+            covers: Covers::NoiseAndBias,
+        };
         let one = Effort {
             n_rays: 5,
             samples_per_pixel: 4,
-            relative_error: Some(0.1),
+            n_samples: 40,
+            error: Some(error(0.1)),
         };
         let other = Effort {
             n_rays: 6,
             samples_per_pixel: 2,
-            relative_error: Some(0.3),
+            n_samples: 20,
+            error: Some(error(0.3)),
         };
         let both = Effort {
             n_rays: 11,
             samples_per_pixel: 2,
-            relative_error: Some(0.3),
+            n_samples: 60,
+            error: Some(error(0.3)),
         };
+        assert_eq!(error(0.1).text(), "10.0 % ± 2.0 %, noise and bias");
         assert_eq!(one.and(other), both);
     }
 }

@@ -4,15 +4,16 @@ use super::audience::Audience;
 use super::budget;
 use super::exposing;
 use super::failure::Failure;
-use super::report::Effort;
+use super::report::{Effort, PictureError};
+use super::spot_check::{self, SPOTS, Spots};
 use super::world::World;
 use crate::camera::Camera;
 use crate::film::{Filter, LinearImage, tone};
 use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
 use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
-    CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Radiosity, Raytracer,
-    RenderContext, RenderError, Solution, Unreadable,
+    CancelToken, Integrator, Method, Path, PhotonMapping, Progress, RadianceEstimator, Radiosity,
+    Raytracer, RenderContext, RenderError, Solution, Unreadable,
 };
 use crate::options::Options;
 use crate::options::value::{GridSize, Renderer};
@@ -240,6 +241,39 @@ impl Viewing<'_> {
         }
     }
 
+    /// How wrong a picture of so many samples is that `camera` took of this scene: noise and bias together. `None` if the path tracer,
+    /// by which it is judged, would not find all light there is. Always the same for the same picture, scene, options and camera.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn spot_check(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        shot: &Shot,
+    ) -> Result<Option<PictureError>, Failure> {
+        let path = Path::default();
+        if !path.shortcomings(scene).is_empty() {
+            return Ok(None);
+        }
+        let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
+        let context = RenderContext {
+            seed: spot_check::seed(self.options.seed.value.cast_unsigned()),
+            ..self.context(self.cancel, &report)
+        };
+        let image = &shot.image;
+        let check = || {
+            let estimator = path.prepare(scene, &context)?;
+            let mut spots = Spots::draw((image.width, image.height), SPOTS, context.seed);
+            let samples = 2 * spot_check::samples_of_half(shot.effort.n_samples);
+            spots.sample(&*estimator, camera, &self.settings(), samples, &context)?;
+            Ok(spots.error_of_image(image).root())
+        };
+        check()
+            .map(Some)
+            .map_err(|error: RenderError| failure(&error))
+    }
+
     /// Adds samples until the time is over, but at least one to each pixel.
     fn shoot_until(
         &self,
@@ -388,7 +422,8 @@ fn shot(result: &FilmResult, is_whole: bool) -> Shot {
     let effort = Effort {
         n_rays: report.rays.total(),
         samples_per_pixel: report.samples_per_pixel,
-        relative_error: report.error.map(|error| error.relative),
+        n_samples: result.film.n_samples(),
+        error: report.error.as_ref().map(PictureError::of_noise),
     };
     Shot {
         image: result.film.image(),

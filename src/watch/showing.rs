@@ -118,7 +118,7 @@ impl Live<'_> {
         if !self.is_once {
             let picture = exposing::develop(&shot.image, Format::Png, exposure);
             let frame = Frame {
-                error: shot.effort.relative_error,
+                error: shot.effort.error.map(|error| error.relative),
                 ..frame(&shot.image, true, shot.effort.samples_per_pixel)
             };
             send(&self.room, &picture, Format::Png, &sight.run.texts(), frame);
