@@ -54,6 +54,7 @@ pub mod image;
 pub mod animation;
 pub mod options;
 pub mod pipeline;
+pub mod trade;
 pub mod watch;
 pub mod lsp;
 pub mod cli;

@@ -1,5 +1,10 @@
 //! The papers, books and standards that the code cites, one heading each. Documentation only.
 //!
+//! # Andersson2020
+//! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström, M. D. Fairchild: FLIP: A Difference Evaluator for
+//! Alternating Images. Proceedings of the ACM on Computer Graphics and Interactive Techniques 3(2), 2020.
+//! <https://doi.org/10.1145/3406183>
+//!
 //! # AvcFile
 //! ISO/IEC 14496-15: Information technology, Coding of audio-visual objects, Part 15: Carriage of network abstraction layer
 //! (NAL) unit structured video in the ISO base media file format.
@@ -39,6 +44,10 @@
 //! # Burley2020
 //! B. Burley: Practical Hash-based Owen Scrambling. Journal of Computer Graphics Techniques 9(4), 2020.
 //! <https://jcgt.org/published/0009/04/01/>
+//!
+//! # Celarek2019
+//! A. Celarek, W. Jakob, M. Wimmer, J. Lehtinen: Quantifying the Error of Light Transport Algorithms. Computer Graphics Forum
+//! 38(4) (EGSR), 2019. <https://doi.org/10.1111/cgf.13775>
 //!
 //! # Chan1983
 //! T. Chan, G. Golub, R. LeVeque: Algorithms for Computing the Sample Variance: Analysis and Recommendations. The American

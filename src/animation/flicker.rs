@@ -4,10 +4,10 @@
 //! nothing of each other, so the mean of (A₁ − A₀)(B₁ − B₀) over all pixels is the mean square of the change that is really
 //! there, without bias and without a reference picture; what (A₁ − A₀)² has beyond it is flicker.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How much a film flickers, in levels of 8-bit sRGB, root of the mean square over pixels, channels and pairs of frames.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flicker {
     /// Pairs of neighbouring frames that were looked at.
     pub pairs: u32,

@@ -41,6 +41,8 @@ pub enum Action {
     Export(ExportArgs),
     /// Check the light transport against what is known on paper; print each number
     Validate(ValidateArgs),
+    /// Measure error against time of every method on a model: table, plots, a page, presets
+    Trade(TradeArgs),
     /// Count the light that each organ absorbs, reflects and lets through
     Light(LightArgs),
     /// Serve an editor (Language Server Protocol on standard input and output)
@@ -165,6 +167,9 @@ pub struct RenderArgs {
         required_unless_present = "explain_options"
     )]
     pub output: Option<PathBuf>,
+    /// Take what `--quality` stands for from this file, such as `understory trade` writes
+    #[arg(long, value_name = "FILE.toml")]
+    pub presets: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
@@ -239,6 +244,9 @@ pub struct FlyArgs {
         required_unless_present_any = ["explain_options", "plan"]
     )]
     pub output: Option<PathBuf>,
+    /// Take what `--quality` stands for from this file, such as `understory trade` writes
+    #[arg(long, value_name = "FILE.toml")]
+    pub presets: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
@@ -275,6 +283,40 @@ pub struct ExportArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub light: SolutionArgs,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub manners: Manners,
+}
+
+/// `trade`
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  understory trade room.rgg -o room-trade\n  \
+                        understory trade forest.rgg -o forest-trade --budget 1800\n  \
+                        understory render room.rgg -o room.png --presets room-trade/presets.toml --quality draft\n\n\
+                        Each method is tried with settings from cheap to dear and several seeds, and its pictures are compared with a\n\
+                        long one without bias. Pictures are at most 240 pixels wide unless --size says otherwise; --renderer tries one\n\
+                        method only. The folder holds index.html (open it in a browser), trade.csv, plots and presets.toml; the\n\
+                        same command goes on where it was stopped, and with a larger --budget it adds to what is there."
+)]
+pub struct TradeArgs {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub model: ModelArg,
+    /// The folder for what is measured
+    #[arg(
+        short,
+        long,
+        value_name = "FOLDER",
+        required_unless_present = "explain_options"
+    )]
+    pub output: Option<PathBuf>,
+    /// Seconds for the whole measurement, growth left out
+    #[arg(long, value_name = "SECONDS", default_value_t = 300)]
+    pub budget: u32,
+    /// Other random numbers are tried so many times for each setting
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(2..=64))]
+    pub seeds: u32,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -365,13 +407,14 @@ const STYLES: Styles = Styles::styled()
     .placeholder(AnsiColor::Cyan.on_default());
 
 /// The commands with their names.
-const COMMANDS: [(&str, Command); 9] = [
+const COMMANDS: [(&str, Command); 10] = [
     ("check", Command::Check),
     ("derive", Command::Derive),
     ("render", Command::Render),
     ("watch", Command::Watch),
     ("fly", Command::Fly),
     ("export", Command::Export),
+    ("trade", Command::Trade),
     ("validate", Command::Validate),
     ("light", Command::Light),
     ("lsp", Command::Lsp),
@@ -421,6 +464,7 @@ impl Action {
             Self::Watch(_) => Command::Watch,
             Self::Fly(_) => Command::Fly,
             Self::Export(_) => Command::Export,
+            Self::Trade(_) => Command::Trade,
             Self::Validate(_) => Command::Validate,
             Self::Light(_) => Command::Light,
             Self::Lsp(_) => Command::Lsp,

@@ -8,6 +8,7 @@ pub mod outcome;
 mod shell;
 mod talking;
 pub mod terminal;
+mod trading;
 mod validating;
 mod watching;
 
@@ -48,9 +49,18 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Watch(args) => Some(&args.manners),
         Action::Fly(args) => Some(&args.manners),
         Action::Export(args) => Some(&args.manners),
+        Action::Trade(args) => Some(&args.manners),
         Action::Light(args) => Some(&args.manners),
     };
-    let shell = Shell::new(&request, manners, cancel);
+    let mut shell = Shell::new(&request, manners, cancel);
+    let presets = match &request.action {
+        Action::Render(args) => args.presets.as_deref(),
+        Action::Fly(args) => args.presets.as_deref(),
+        _ => None,
+    };
+    if let Err(failure) = shell.read_presets(presets) {
+        return shell.conclude(Err(failure)).into();
+    }
     let result = match &request.action {
         Action::Check(args) => commands::check(&shell, args),
         Action::Derive(args) => commands::derive(&shell, args),
@@ -58,6 +68,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Action::Watch(args) => watching::watch(&shell, args, sender, events),
         Action::Fly(args) => flying::fly(&shell, args),
         Action::Export(args) => commands::export(&shell, args),
+        Action::Trade(args) => trading::trade(&shell, args),
         Action::Validate(args) => validating::validate(&shell, args),
         Action::Light(args) => commands::light(&shell, args),
         Action::Lsp(_) => Ok(()),

@@ -4,7 +4,7 @@ use super::args::{Manners, Request};
 use super::outcome::{self, Exit};
 use super::terminal::{Manner, ModelOutput, Terminal};
 use crate::integrator::CancelToken;
-use crate::options::{Command, Options, explain};
+use crate::options::{Command, Options, Presets, explain};
 use crate::pipeline::failure::Failure;
 use crate::pipeline::inputs::Inputs;
 use crate::pipeline::making::{Made, Making, Partial};
@@ -12,7 +12,7 @@ use crate::pipeline::report::{PhaseSeconds, REPORT_KEYS, Report, Work};
 use crate::pipeline::store::JsonTarget;
 use crate::pipeline::studio::Run;
 use crate::pipeline::threads;
-use crate::pipeline::world::Machine;
+use crate::pipeline::world::{Machine, World};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -44,6 +44,7 @@ impl Shell {
             | Command::Watch
             | Command::Fly
             | Command::Export
+            | Command::Trade
             | Command::Validate
             | Command::Light
             | Command::Lsp => ModelOutput::Error,
@@ -56,6 +57,23 @@ impl Shell {
             flags: request.flags.clone(),
             words: request.words.clone(),
         }
+    }
+
+    /// Takes what `--quality` stands for from a file.
+    ///
+    /// # Errors
+    /// If it cannot be read or holds no presets.
+    pub(super) fn read_presets(&mut self, path: Option<&Path>) -> Result<(), Failure> {
+        let Some(path) = path else { return Ok(()) };
+        let content = self
+            .world
+            .read(path)
+            .map_err(|error| Failure::file("read", path, &error))?;
+        let presets = Presets::parse(&String::from_utf8_lossy(&content)).map_err(|why| {
+            Failure::Usage(format!("`{}` holds no presets: {why}", path.display()))
+        })?;
+        self.flags.presets = presets;
+        Ok(())
     }
 
     /// Does the work of a command on as many threads as the options ask for.

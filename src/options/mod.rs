@@ -26,5 +26,6 @@ pub mod surroundings;
 pub mod table;
 pub mod value;
 
+pub use preset::Presets;
 pub use setting::{Origin, SetError, Setting};
 pub use table::{Command, OptionRow, Options, Section, Stage, TABLE};

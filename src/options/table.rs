@@ -2,6 +2,7 @@
 
 use super::flying::{Aperture, FrameCount, FrameFormat, FrameRate, Metres, Shutter};
 use super::lighting::{Fraction, PlotSize};
+use super::preset::Presets;
 use super::radiosity::{HemicubePixels, SplitDepth, Threshold, Width};
 use super::setting::{Origin, SetError, Setting};
 use super::surroundings::{SkyKind, SunIrradiance};
@@ -40,21 +41,23 @@ pub enum Command {
     Lsp,
     /// Measures what is known on paper.
     Validate,
+    /// Measures what accuracy costs.
+    Trade,
 }
 
-use Command::{Derive, Export, Fly, Light, Render, Validate, Watch};
+use Command::{Derive, Export, Fly, Light, Render, Trade, Validate, Watch};
 /// Commands that run the model.
-const GROWING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light];
+const GROWING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light, Trade];
 /// Commands that draw random numbers and work in parallel.
-const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light, Validate];
+const WORKING: &[Command] = &[Derive, Render, Watch, Fly, Export, Light, Validate, Trade];
 /// Commands that make pictures.
-const PICTURING: &[Command] = &[Render, Watch, Fly];
+const PICTURING: &[Command] = &[Render, Watch, Fly, Trade];
 /// Commands that have a camera and light that all cameras share.
-const SOLVING: &[Command] = &[Render, Watch, Fly, Export];
+const SOLVING: &[Command] = &[Render, Watch, Fly, Export, Trade];
 /// Commands that trace single light paths.
-const TRACING: &[Command] = &[Render, Watch, Fly, Light];
+const TRACING: &[Command] = &[Render, Watch, Fly, Light, Trade];
 /// Commands that trace light.
-const LIGHTING: &[Command] = &[Render, Watch, Fly, Export, Light];
+const LIGHTING: &[Command] = &[Render, Watch, Fly, Export, Light, Trade];
 
 /// Where an option stands in the file beside a model, and under which heading it is explained.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,6 +170,8 @@ macro_rules! options {
         #[derive(Clone, Debug, PartialEq)]
         pub struct Options {
             $($(#[doc = $doc])+ pub $field: Setting<$type>,)*
+            /// What `quality` stands for.
+            pub presets: Presets,
         }
 
         /// All options, in the order in which they are explained.
@@ -184,7 +189,7 @@ macro_rules! options {
 
         impl Default for Options {
             fn default() -> Self {
-                Self { $($field: Setting::from_default($default),)* }
+                Self { $($field: Setting::from_default($default),)* presets: Presets::default() }
             }
         }
 

@@ -33,6 +33,18 @@ pub enum Renderer {
     Radiosity,
 }
 
+impl Renderer {
+    /// Its name, as it is written.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Path => "path",
+            Self::Raytracer => "raytracer",
+            Self::Photon => "photon",
+            Self::Radiosity => "radiosity",
+        }
+    }
+}
+
 /// How many photons, 0 to 10⁹.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhotonCount(pub u64);

@@ -19,3 +19,19 @@ pub trait Audience: Send + Sync {
     /// No stage is under way any more.
     fn ends(&self);
 }
+
+/// Nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Audience for Silent {
+    fn printed(&self, _: &str) {}
+
+    fn warned(&self, _: &SourceMap, _: &Diagnostics) {}
+
+    fn begins(&self, _: &'static str) {}
+
+    fn progress(&self, _: u64, _: u64) {}
+
+    fn ends(&self) {}
+}

@@ -91,6 +91,12 @@ impl Inputs {
 }
 
 impl Sources {
+    /// The name of the model's first file.
+    pub fn name(&self) -> &str {
+        let first = self.models.first().and_then(|&id| self.map.file(id));
+        first.map_or("", |file| &*file.name)
+    }
+
     /// The options of the run: `flags` over the file beside the model over the preset over the defaults; and what is wrong
     /// with that file.
     pub fn options(&self, flags: &Options) -> (Options, Diagnostics) {

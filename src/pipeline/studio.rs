@@ -21,7 +21,7 @@ use crate::check::model::Model;
 use crate::diag::Diagnostics;
 use crate::growth::Growth;
 use crate::integrator::{CancelToken, Solution};
-use crate::interpret::Purpose;
+use crate::interpret::{Organs, Purpose};
 use crate::light::SkyImage;
 use crate::options::surroundings::SkyKind;
 use crate::options::{Options, Origin, Stage};
@@ -78,6 +78,8 @@ pub struct Studio<'w> {
     history: Option<History>,
     drawn: Option<(ContentHash, Drawn)>,
     pub(super) scene: Option<(ContentHash, Arc<Scene>)>,
+    /// What the organ numbers of the scene built last stand for.
+    pub organs: Option<Arc<Organs>>,
     /// The digest of the shapes of the scene built last.
     shapes: Option<(u64, Weak<Scene>)>,
     /// The light of that scene, with the key of both.
@@ -167,6 +169,7 @@ impl<'w> Studio<'w> {
             history: None,
             drawn: None,
             scene: None,
+            organs: None,
             shapes: None,
             solution: None,
             solution_files: SolutionFiles::default(),
@@ -317,6 +320,7 @@ impl<'w> Studio<'w> {
             return Err(Failure::Stopped);
         }
         let scene = built.map_err(|error| growing::blame(run, &drawn.organs, &error))?;
+        self.organs = Some(drawn.organs);
         self.work.scenes += 1;
         if is_built {
             let (n_built, n_kept) = scene.prototypes();
