@@ -5,6 +5,7 @@ mod cluster;
 mod commands;
 mod flying;
 pub mod outcome;
+mod request;
 mod shell;
 mod talking;
 pub mod terminal;
@@ -14,8 +15,9 @@ mod watching;
 
 use crate::integrator::CancelToken;
 use crate::watch::Event;
-use args::{Action, Request};
+use args::Action;
 use outcome::Exit;
+use request::Request;
 use shell::Shell;
 use std::ffi::OsString;
 use std::process::ExitCode;

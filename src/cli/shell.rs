@@ -1,7 +1,8 @@
 //! What all commands share: the machine, the terminal, the threads, the wish to stop.
 
-use super::args::{Manners, Request};
+use super::args::Manners;
 use super::outcome::{self, Exit};
+use super::request::Request;
 use super::terminal::{Manner, ModelOutput, Terminal};
 use crate::integrator::CancelToken;
 use crate::options::{Command, Options, Presets, explain};

@@ -257,3 +257,13 @@ pub const CELL_SLACK: f64 = 1e-9;
 /// Corners are projected with errors of some 10⁻¹³ pixels; the middle of a pixel on the edge between two walls must not miss both. What
 /// it shows then is right to that part of a pixel. Used by [`crate::integrator::radiosity`].
 pub const PIXEL_SLACK: f64 = 1e-9;
+
+/// Relative squared noise at which the reference of `trade` is good enough: a thousandth of what the best settings reach.
+pub const REFERENCE_NOISE: f64 = 1e-6;
+
+/// Floors that a fit of errors over work tries, as parts of the least error: less is as good as none, and at the least error itself
+/// nothing could still fall.
+pub const FIT_FLOORS: [f64; 2] = [1e-3, 0.999];
+
+/// The step of the logarithm of a fitted price at which it is found.
+pub const FIT_STEP: f64 = 1e-12;

@@ -5,6 +5,7 @@
 //! them c is found in closed form of the residuals' mean.
 
 use crate::math::functions::{exp, ln, pow};
+use crate::math::tolerance::{FIT_FLOORS, FIT_STEP};
 
 /// Powers that are considered.
 const POWERS: [f64; 2] = [0.02, 4.0];
@@ -158,7 +159,7 @@ impl Search<'_> {
             return none;
         }
         // Floors below a thousandth of the least error are as good as none; at the least error itself nothing could still fall.
-        let with = minimum([ln(1e-3), ln(0.999)], |part| {
+        let with = minimum([ln(FIT_FLOORS[0]), ln(FIT_FLOORS[1])], |part| {
             self.candidate(power, self.least * exp(part))
         });
         if with.residual < none.residual {
@@ -171,7 +172,7 @@ impl Search<'_> {
     /// With the best c: Gauss-Newton on its logarithm.
     fn candidate(&self, power: f64, floor: f64) -> Candidate {
         let n = self.points.len() as f64;
-        let rest = |y: f64| ln((y - floor).max(1e-3 * y));
+        let rest = |y: f64| ln((y - floor).max(FIT_FLOORS[0] * y));
         let start = self.points.iter().map(|(x, y)| rest(*y) + power * x);
         let mut log_price = start.sum::<f64>() / n;
         let mut residual = f64::INFINITY;
@@ -186,8 +187,8 @@ impl Search<'_> {
                 sum += difference * difference;
             }
             residual = sum;
-            let step = slope / curvature.max(1e-12);
-            if !step.is_finite() || step.abs() < 1e-12 {
+            let step = slope / curvature.max(FIT_STEP);
+            if !step.is_finite() || step.abs() < FIT_STEP {
                 break;
             }
             log_price += step.clamp(-2.0, 2.0);

@@ -23,8 +23,8 @@ const FEATURE_EXPONENT: f64 = 0.5;
 /// Contrast sensitivity of the eye to lightness, red-green and blue-yellow, in the space of angles: two Gaussians
 /// a √(π/b) exp(-π² x²/b) each (§4.1.1, table 1).
 const SENSITIVITIES: [[(f64, f64); 2]; 3] = [
-    [(1.0, 0.0047), (0.0, 1e-5)],
-    [(1.0, 0.0053), (0.0, 1e-5)],
+    [(1.0, 0.0047), (0.0, 0.000_01)],
+    [(1.0, 0.0053), (0.0, 0.000_01)],
     [(34.1, 0.04), (13.5, 0.025)],
 ];
 
@@ -126,7 +126,7 @@ impl Plane {
     }
 }
 
-/// Lightness, red-green and blue-yellow (YCxCz) of each pixel.
+/// Lightness, red-green and blue-yellow (`YCxCz`) of each pixel.
 fn opponents(bytes: &[u8], width: usize) -> [Plane; 3] {
     let pixels: Vec<[f64; 3]> = bytes
         .chunks_exact(3)
@@ -220,7 +220,7 @@ fn lab_with_hunt(color: Rgb) -> [f64; 3] {
     [lightness, hunt * 500.0 * (x - y), hunt * 200.0 * (y - z)]
 }
 
-/// Distance of lightness plus distance of chroma (HyAB).
+/// Distance of lightness plus distance of chroma (`HyAB`).
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
 }

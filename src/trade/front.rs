@@ -91,8 +91,8 @@ pub fn crossings<'f>(front: &[Point<'f>]) -> Vec<Crossing<'f>> {
 pub fn presets(findings: &Findings) -> Vec<(&'static str, Point<'_>)> {
     let front = front(findings, 1, findings.scale);
     let within = |seconds: f64| {
-        let fast = front.iter().filter(|point| point.seconds <= seconds);
-        fast.last().or(front.first()).copied()
+        let mut fast = front.iter().filter(|point| point.seconds <= seconds);
+        fast.next_back().or(front.first()).copied()
     };
     DECADES
         .iter()
@@ -249,8 +249,8 @@ pub(super) mod tests {
                     .any(|point| std::ptr::eq(point.rung, preset.rung))
             );
             assert!(preset.seconds <= seconds, "{name}");
-            let better = front.iter().filter(|p| p.seconds <= seconds);
-            assert!(better.last().unwrap().rung.error >= preset.rung.error);
+            let mut better = front.iter().filter(|p| p.seconds <= seconds);
+            assert!(better.next_back().unwrap().rung.error >= preset.rung.error);
         }
         let text = toml(&findings);
         let table: toml::Table = text.parse().unwrap();

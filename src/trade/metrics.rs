@@ -272,7 +272,7 @@ mod tests {
             pixels: vec![Rgb::BLACK; 2],
         };
         let truth = Truth::new(&black, &black);
-        assert_eq!(truth.decompose(&[black.clone()]).error, 0.0);
+        assert_eq!(truth.decompose(std::slice::from_ref(&black)).error, 0.0);
         assert_eq!(mean_image(&[black.clone(), black.clone()]), Some(black));
         assert_eq!(mean_image(&[]), None);
     }

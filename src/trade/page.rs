@@ -53,12 +53,12 @@ pub fn html(findings: &Findings) -> String {
 fn introduction(findings: &Findings, out: &mut String) {
     let [width, height] = findings.size;
     let reference = &findings.reference;
-    let _ = write!(
+    let _ = writeln!(
         out,
         "<p>Every setting was rendered with {} different seeds at {width} × {height} pixels on {} threads and compared with a \
          picture of {} samples per pixel by <b>{}</b>, whose own noise is {:.2} % and does not count. Errors are root mean \
          square relative errors of luminance, with the worst thousandth of the pixels left out. Seconds are of this size; a \
-         picture of the size that the model asks for has {:.1} times as many pixels.</p>\n",
+         picture of the size that the model asks for has {:.1} times as many pixels.</p>",
         findings.seeds,
         findings.threads,
         reference.samples,
@@ -285,7 +285,7 @@ fn everything(findings: &Findings, out: &mut String) {
                 signed(rung.energy),
                 rung.flip[0],
                 rung.flip[1],
-                rung.rays as f64 * 1e-6,
+                rung.rays as f64 / 1_000_000.0,
                 flags(rung)
             );
         }

@@ -256,7 +256,7 @@ fn marks([from, to]: [f64; 2]) -> Vec<f64> {
 
 /// A number as people write it, with no more digits than it has as a mark.
 pub(super) fn number(x: f64) -> String {
-    if x >= 1e5 || x < 1e-4 {
+    if !(0.000_1..100_000.0).contains(&x) {
         return format!("{x:.0e}");
     }
     let text = format!("{x:.5}");

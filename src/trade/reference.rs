@@ -8,6 +8,7 @@ use super::session::Session;
 use super::shooting::set;
 use crate::film::{LinearImage, tone};
 use crate::math::rng;
+use crate::math::tolerance::REFERENCE_NOISE;
 use crate::options::Options;
 use crate::pipeline::content_hash::ContentHash;
 use crate::pipeline::exposing;
@@ -21,8 +22,6 @@ const FIRST_BATCH: u32 = 4;
 const MOST_BATCHES: u32 = 1024;
 /// From which the seeds of the reference are made.
 const REFERENCE_SEED: u64 = 0x5EED_0F7B;
-/// The reference is good enough once its squared noise is this.
-const ENOUGH: f64 = 1e-6;
 
 /// What the pictures are compared with.
 pub(super) struct Standard {
@@ -96,7 +95,8 @@ impl Session<'_> {
         let deadline = REFERENCE_SHARE * self.plan.budget;
         for _ in 0..MOST_BATCHES {
             let is_enough = halves.as_ref().is_some_and(|[a, b]| {
-                known.seconds + self.elapsed() >= deadline || Truth::new(a, b).noise() < ENOUGH
+                known.seconds + self.elapsed() >= deadline
+                    || Truth::new(a, b).noise() < REFERENCE_NOISE
             });
             if is_enough {
                 break;
