@@ -17,7 +17,7 @@ use statistics::assert_same;
 use std::f64::consts::PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;
-use understory::integrator::guide::Guide;
+use understory::integrator::requirements::{Feature, Features, Requirements};
 use understory::integrator::{CancelToken, Integrator, Path, RayCounts, RenderContext};
 use understory::light::{Environment, Sky};
 use understory::material::Material;
@@ -125,9 +125,7 @@ fn a_guide_changes_the_noise_and_not_the_mean() {
 
 #[test]
 fn there_is_a_guide_only_where_it_pays() {
-    let cancel = CancelToken::default();
-    let context = context(&cancel);
-    let has_guide = |scene: &Scene| Guide::new(scene, &context).unwrap().is_some();
+    let has_guide = |scene: &Scene| Requirements::of(scene, Features::NONE).has(Feature::Guide);
     let mirror = Material::mirror(gray(0.9));
     let scene = ball_room(mirror.clone(), 0.15).build();
     assert!(has_guide(&scene));

@@ -18,6 +18,7 @@ use understory::integrator::interception::{
     Interception, InterceptionError, Lighting, OrganLight, SensorField, Wanted,
 };
 use understory::integrator::photon::Plot;
+use understory::integrator::requirements::Features;
 use understory::integrator::{CancelToken, RenderContext};
 use understory::interpret::Sensor;
 use understory::light::{Environment, Light, Sky};
@@ -43,6 +44,7 @@ fn settings(photons: u64) -> Interception {
         most_photons: photons,
         memory: 1 << 30,
         plants: vec![],
+        kept: Features::NONE,
     }
 }
 

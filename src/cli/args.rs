@@ -75,6 +75,14 @@ pub struct Manners {
     pub explain_options: bool,
 }
 
+/// What commands that light a scene take.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// Grow the model, print what light in its scene requires and what is left out, and stop
+    #[arg(long)]
+    pub explain_scene: bool,
+}
+
 /// `check`
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  understory check plant.rgg")]
@@ -146,7 +154,7 @@ pub struct RenderArgs {
         short,
         long,
         value_name = "FILE",
-        required_unless_present = "explain_options"
+        required_unless_present_any = ["explain_options", "explain_scene"]
     )]
     pub output: Option<PathBuf>,
     /// Take what `--quality` stands for from this file, such as `understory trade` writes
@@ -158,6 +166,9 @@ pub struct RenderArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub light: SolutionArgs,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub scene: SceneArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -223,7 +234,7 @@ pub struct FlyArgs {
         short,
         long,
         value_name = "FILE",
-        required_unless_present_any = ["explain_options", "plan"]
+        required_unless_present_any = ["explain_options", "explain_scene", "plan"]
     )]
     pub output: Option<PathBuf>,
     /// Take what `--quality` stands for from this file, such as `understory trade` writes
@@ -235,6 +246,9 @@ pub struct FlyArgs {
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub light: SolutionArgs,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub scene: SceneArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -259,12 +273,15 @@ pub struct ExportArgs {
         short,
         long,
         value_name = "FILE.glb",
-        required_unless_present = "explain_options"
+        required_unless_present_any = ["explain_options", "explain_scene"]
     )]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub light: SolutionArgs,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub scene: SceneArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,

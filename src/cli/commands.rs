@@ -95,8 +95,9 @@ fn printed(growth: &Growth, what: Print) -> String {
 pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     let path = &args.model.model;
     let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(path, Command::Render),
+        _ if args.manners.explain_options => return shell.explain(path, Command::Render),
+        Some(output) if !args.scene.explain_scene => output,
+        _ => return explain_scene(shell, &args.model),
     };
     let target = PictureTarget::new(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
@@ -106,7 +107,7 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
         studio.solution_files.check(&run.options)?;
         check_wishes(&shell.world, run)?;
         let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
-        shell.report(report.as_ref(), run, (&studio.seconds, studio.work), &made)?;
+        shell.report(report.as_ref(), run, studio, &made)?;
         shell
             .terminal
             .note(&summary(target.path(), run, studio, &made));
@@ -114,12 +115,25 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     })
 }
 
+/// `--explain-scene`: what the scene requires, and nothing else.
+pub(super) fn explain_scene(shell: &Shell, model: &ModelArg) -> Result<(), Failure> {
+    let mut studio = studio(shell, model)?;
+    run(shell, &mut studio, |studio, run| {
+        studio.build(run, &shell.cancel)?;
+        if let Some(requirements) = studio.requirements(run) {
+            shell.terminal.print(&requirements.table());
+        }
+        Ok(())
+    })
+}
+
 /// `export`: the lit surfaces.
 pub(super) fn export(shell: &Shell, args: &ExportArgs) -> Result<(), Failure> {
     let path = &args.model.model;
     let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(path, Command::Export),
+        _ if args.manners.explain_options => return shell.explain(path, Command::Export),
+        Some(output) if !args.scene.explain_scene => output,
+        _ => return explain_scene(shell, &args.model),
     };
     let target = GlbTarget::new(&shell.world, output)?;
     let mut studio = studio(shell, &args.model)?;

@@ -2,7 +2,7 @@
 
 use super::args::FlyArgs;
 use super::cluster;
-use super::commands::{check_wishes, finished, run, solution_files, studio};
+use super::commands::{check_wishes, explain_scene, finished, run, solution_files, studio};
 use super::shell::Shell;
 use crate::animation::FilmShape;
 use crate::image::{Format, Picture};
@@ -20,6 +20,9 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
     let path = &args.model.model;
     if args.manners.explain_options {
         return shell.explain(path, Command::Fly);
+    }
+    if args.scene.explain_scene {
+        return explain_scene(shell, &args.model);
     }
     let plan = picture_target(shell, args.plan.as_deref())?;
     let Some(output) = &args.output else {
@@ -50,8 +53,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
         }
         reel.open(&shell.world)?;
         let made = shell.making(Partial::Drop).film(studio, run, &reel)?;
-        let told = (&studio.seconds, studio.work);
-        shell.report(report.as_ref(), run, told, &made)?;
+        shell.report(report.as_ref(), run, studio, &made)?;
         if let Some(sheet) = sheet.as_ref().filter(|_| made.is_whole) {
             let frames = run.options.frames.value.clone();
             let frames = frames.unwrap_or(0..shape.n_frames);

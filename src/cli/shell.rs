@@ -9,9 +9,9 @@ use crate::options::{Command, Options, Presets, explain};
 use crate::pipeline::failure::Failure;
 use crate::pipeline::inputs::Inputs;
 use crate::pipeline::making::{Made, Making, Partial};
-use crate::pipeline::report::{PhaseSeconds, REPORT_KEYS, Report, Work};
+use crate::pipeline::report::{REPORT_KEYS, Report};
 use crate::pipeline::store::JsonTarget;
-use crate::pipeline::studio::Run;
+use crate::pipeline::studio::{Run, Studio};
 use crate::pipeline::threads;
 use crate::pipeline::world::{Machine, World};
 use std::path::Path;
@@ -134,22 +134,24 @@ impl Shell {
         &self,
         target: Option<&JsonTarget>,
         run: &Run,
-        (seconds, work): (&PhaseSeconds, Work),
+        studio: &Studio<'_>,
         made: &Made,
     ) -> Result<(), Failure> {
         let Some(target) = target else { return Ok(()) };
         let model = (&run.sources.map, run.sources.model_hash);
+        let requirements = studio.requirements(run);
         let report = Report::new(
             &self.world,
             model,
             &run.options,
-            seconds,
+            &studio.seconds,
             made.effort,
             made.hash,
         )
         .solved(made.solution)
         .warning(&made.warnings)
-        .working(work)
+        .requiring(requirements.as_ref())
+        .working(studio.work)
         .flown(made.n_made, made.n_kept, made.flicker);
         target.write(&self.world, &report)
     }

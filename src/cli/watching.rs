@@ -261,8 +261,7 @@ impl Outlet for Pictures<'_> {
             flicker: None,
             has_film: false,
         };
-        let told = (&studio.seconds, studio.work);
-        shell.report(self.report.as_ref(), run, told, &made)?;
+        shell.report(self.report.as_ref(), run, studio, &made)?;
         shell.terminal.finish_stage();
         let name = self
             .target

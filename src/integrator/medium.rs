@@ -3,6 +3,7 @@
 //! A body of glass begins behind the front of its surface. A path that crosses to the back enters it, one that crosses to the
 //! front leaves it; bodies within bodies are remembered in order. Nothing scatters on the way.
 
+use super::requirements::{Feature, Features, Requirements};
 use crate::color::Rgb;
 use crate::material::ScatteringFrame;
 use crate::math::Ray;
@@ -85,19 +86,27 @@ impl Media {
 #[derive(Debug)]
 pub struct Bodies<'s> {
     scene: &'s Scene,
-    /// Whether any absorbs; if not, none is remembered.
+    /// Whether any may absorb; if not, none is remembered.
     absorb: bool,
     /// What was found around the last point asked for: the camera asks for the same one again and again.
     last: RwLock<Option<(DVec3, Media)>>,
 }
 
 impl<'s> Bodies<'s> {
-    /// Looks through the materials of `scene`.
+    /// The bodies of `scene`, as far as they absorb.
     #[must_use]
     pub fn new(scene: &'s Scene) -> Self {
-        let absorbs = |body: Option<Rgb>| body.is_some_and(|absorption| !absorption.is_black());
-        let mut materials = scene.materials().iter();
-        let absorb = materials.any(|material| absorbs(material.scattering().body()));
+        Self::required(scene, &Requirements::of(scene, Features::NONE))
+    }
+
+    /// The bodies of a scene that requires this.
+    #[must_use]
+    pub fn required(scene: &'s Scene, requirements: &Requirements) -> Self {
+        Self::remembered(scene, requirements.has(Feature::Bodies))
+    }
+
+    /// The bodies of a scene, which are forgotten unless they are to be remembered.
+    pub(super) fn remembered(scene: &'s Scene, absorb: bool) -> Self {
         Self {
             scene,
             absorb,

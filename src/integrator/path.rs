@@ -15,7 +15,7 @@
 use super::guide::{self, Advice, Guide};
 use super::medium::{Bodies, left_after};
 use super::mis::power_heuristic;
-use super::requirements::has_focused_light;
+use super::requirements::{Feature, Features, Requirements, has_focused_light};
 use super::sources::{Reach, Shading, Sources, receiver};
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
 use crate::color::Rgb;
@@ -38,6 +38,8 @@ pub struct Path {
     pub roulette_after: Option<u32>,
     /// Whether paths may be guided to where light is. The mean is the same, the noise is not.
     pub guided: bool,
+    /// What is done even if the scene does not require it.
+    pub kept: Features,
 }
 
 impl Default for Path {
@@ -47,6 +49,7 @@ impl Default for Path {
             strategies: Strategies::Both,
             roulette_after: Some(4),
             guided: true,
+            kept: Features::NONE,
         }
     }
 }
@@ -79,17 +82,28 @@ impl Integrator for Path {
         scene: &'s Scene,
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
-        let guide = if self.guided && self.strategies == Strategies::Both {
-            Guide::new(scene, context)?
+        let requirements = Requirements::of(scene, self.kept);
+        let may_guide = self.guided && self.strategies == Strategies::Both;
+        let guide = if may_guide && requirements.has(Feature::Guide) {
+            Some(Guide::new(scene, context)?)
         } else {
             None
         };
+        let max_depth = if requirements.has(Feature::Bounces) {
+            self.max_depth
+        } else {
+            Some(0)
+        };
         Ok(Box::new(PathEstimator {
             scene,
-            sources: Sources::new(scene),
-            bodies: Bodies::new(scene),
+            sources: Sources::required(scene, &requirements),
+            bodies: Bodies::required(scene, &requirements),
             guide,
-            settings: self.clone(),
+            may_meet_light: requirements.has(Feature::LightHits),
+            settings: Self {
+                max_depth,
+                ..self.clone()
+            },
         }))
     }
 
@@ -107,6 +121,8 @@ struct PathEstimator<'s> {
     sources: Sources<'s>,
     bodies: Bodies<'s>,
     guide: Option<Guide>,
+    /// Whether rays can meet anything that shines.
+    may_meet_light: bool,
     settings: Path,
 }
 
@@ -149,12 +165,16 @@ impl RadianceEstimator for PathEstimator<'_> {
             let way = self.follow(&ray, sampler, rays);
             throughput *= way.weight * left_after(media.absorption(), way.distance);
             let Some((point, optics)) = way.end else {
-                radiance += throughput * self.escaping_radiance(ray.direction, last);
+                if self.may_meet_light {
+                    radiance += throughput * self.escaping_radiance(ray.direction, last);
+                }
                 break;
             };
 
             // Add what the surface emits, weighted against having sampled it as a light from the last vertex.
-            radiance += throughput * self.emitted_radiance(&point, &optics, last);
+            if self.may_meet_light {
+                radiance += throughput * self.emitted_radiance(&point, &optics, last);
+            }
             if self
                 .settings
                 .max_depth
@@ -216,11 +236,13 @@ impl RadianceEstimator for PathEstimator<'_> {
                 throughput *= 1.0 / survival;
                 worth *= 1.0 / survival;
             }
-            last = Some(LastScattering {
-                from: receiver(&point, &frame, &optics.scattering, wo),
-                density: scattered.density,
-                reach,
-            });
+            if self.may_meet_light {
+                last = Some(LastScattering {
+                    from: receiver(&point, &frame, &optics.scattering, wo),
+                    density: scattered.density,
+                    reach,
+                });
+            }
             // What a mirror shows is seen as directly as the mirror.
             if scattered.density != Density::Delta {
                 reach = Reach::Later;

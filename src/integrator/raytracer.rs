@@ -11,6 +11,7 @@
 
 use super::medium::{Bodies, Media, left_after};
 use super::path::Strategies;
+use super::requirements::{Feature, Features, Requirements};
 use super::sources::{Reach, Shading, Shadows, Sources};
 use super::split::directions;
 use super::{Integrator, RadianceEstimator, RayCounts, RenderContext, RenderError};
@@ -34,6 +35,8 @@ pub struct Raytracer {
     pub light_samples: u32,
     /// How clear bodies stop light on its way from a lamp.
     pub shadows: Shadows,
+    /// What is done even if the scene does not require it.
+    pub kept: Features,
 }
 
 impl Default for Raytracer {
@@ -43,6 +46,7 @@ impl Default for Raytracer {
             least_weight: 1.0 / 512.0,
             light_samples: 1,
             shadows: Shadows::Clear,
+            kept: Features::NONE,
         }
     }
 }
@@ -53,10 +57,17 @@ impl Integrator for Raytracer {
         scene: &'s Scene,
         _context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
+        let requirements = Requirements::of(scene, self.kept);
+        // Where there are no clear bodies both kinds of shadows are the same, and opaque ones need not be in order.
+        let shadows = if requirements.has(Feature::ClearShadows) {
+            self.shadows
+        } else {
+            Shadows::Opaque
+        };
         Ok(Box::new(RaytracerEstimator {
             scene,
-            sources: Sources::new(scene).with_shadows(self.shadows),
-            bodies: Bodies::new(scene),
+            sources: Sources::required(scene, &requirements).with_shadows(shadows),
+            bodies: Bodies::required(scene, &requirements),
             settings: self.clone(),
         }))
     }

@@ -2,7 +2,7 @@
 //!
 //! Up to [`FEW`] sources are all sampled at the first vertex of a path. Of more, and at later vertices, one is chosen by chance:
 //! sky, sun, a parallel light, or all lamps and shining surfaces together; among these a tree chooses by what each can give to
-//! the point ([`LampTree`](crate::light::LampTree)).
+//! the point ([`LampTree`](crate::light::LampTree)). Where there is only one, nothing is chosen.
 
 use super::RayCounts;
 use super::clear_shadow;
@@ -10,6 +10,7 @@ use super::guide::Advice;
 use super::medium::left_after;
 use super::mis::power_heuristic;
 use super::path::Strategies;
+use super::requirements::{Feature, Features, Requirements};
 use super::selection::{Selection, Source, Tree, weights};
 use crate::color::Rgb;
 use crate::light::{Dome, Light, LightSample, Receiver, SunDisk};
@@ -121,6 +122,12 @@ impl<'s> Sources<'s> {
     /// Gathers the sources of `scene`.
     #[must_use]
     pub fn new(scene: &'s Scene) -> Self {
+        Self::required(scene, &Requirements::of(scene, Features::NONE))
+    }
+
+    /// Gathers the sources of a scene that requires this.
+    #[must_use]
+    pub fn required(scene: &'s Scene, requirements: &Requirements) -> Self {
         let environment = scene.environment();
         let dome = Dome::new(environment);
         let sun = environment
@@ -141,7 +148,9 @@ impl<'s> Sources<'s> {
         };
         let tree = Tree::new(scene, &sources);
         let first = Selection::new(&weights, &tree, is_always);
-        let later = Selection::new(&weights, &tree, |_| false);
+        // The only one is not chosen.
+        let is_only = !requirements.has(Feature::LightChoice);
+        let later = Selection::new(&weights, &tree, |index| is_only && weights[index] > 0.0);
         Self {
             scene,
             dome,

@@ -272,7 +272,8 @@ impl Material {
     }
 
     /// The matt part at most, in the largest values of its pictures: front, back.
-    pub(super) fn most_sides(&self) -> [Side; 2] {
+    #[must_use]
+    pub fn most_sides(&self) -> [Side; 2] {
         self.with_colors(|texture| texture.image.most())
     }
 

@@ -13,6 +13,7 @@ use super::value::{
 use crate::animation::KeyFrames;
 use crate::diag::nearest;
 use crate::integrator::radiosity::{FormFactorMethod, Solver};
+use crate::integrator::requirements::Features;
 use crate::light::sun_position::{Moment, Place};
 use crate::math::angle::Angle;
 use crate::turtle::Layers;
@@ -286,6 +287,8 @@ options! {
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
     /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
     time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
+    /// What is done though the scene does not require it, to see that nothing changes but time: names that `--explain-scene` lists, or `all`
+    require: Features = "none", "require", "NAME,NAME", Render, Scene, LIGHTING;
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture
     exposure: Option<f64> = "auto", "exposure", "STOPS", Render, View, SOLVING;
 

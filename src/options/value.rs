@@ -2,6 +2,7 @@
 
 use crate::color::Rgb;
 use crate::integrator::photon_map::MOST_GATHER_RAYS;
+use crate::integrator::requirements::Features;
 use crate::math::angle::Angle;
 use crate::turtle::Layers;
 use glam::DVec3;
@@ -71,6 +72,12 @@ impl OptionValue for GatherRays {
             Ok(n) if n <= MOST_GATHER_RAYS => Ok(Self(n)),
             _ => Err("a whole number from 0 to 65536".into()),
         }
+    }
+}
+
+impl OptionValue for Features {
+    fn parse(text: &str) -> Result<Self, String> {
+        text.parse()
     }
 }
 

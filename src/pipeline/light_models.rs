@@ -9,6 +9,7 @@ use crate::growth::Sketch;
 use crate::integrator::interception::{
     Interception, InterceptionError, Lighting, OrganLight, SensorField, Wanted,
 };
+use crate::integrator::requirements::Features;
 use crate::integrator::{CancelToken, RenderContext};
 use crate::interpret::{self, DecodedPictures, Interpretation, Organs, Purpose};
 use crate::scene::{Scene, SceneError};
@@ -96,6 +97,7 @@ impl SceneLight {
             most_photons: 0,
             memory: self.memory,
             plants: vec![],
+            kept: Features::NONE,
         };
         let audience = &self.audience;
         audience.begins("tracing light");

@@ -121,6 +121,7 @@ fn settings(options: &Options, memory: u64, plants: Vec<Option<u32>>) -> Interce
         most_photons: options.most_photons.value.get(),
         memory,
         plants,
+        kept: options.require.value,
     }
 }
 

@@ -7,6 +7,7 @@ use super::world::World;
 use crate::animation::flicker::Flicker;
 use crate::diag::SourceMap;
 use crate::film::ErrorEstimate;
+use crate::integrator::requirements::{Finding, Requirements};
 use crate::options::{Options, explain};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -252,6 +253,15 @@ pub struct SolutionFacts {
     pub residual: Option<f64>,
 }
 
+/// Something that a scene requires or not.
+#[derive(Serialize)]
+struct RequirementFact<'a> {
+    feature: &'static str,
+    /// `needed`, `left out` or `kept`.
+    state: &'static str,
+    why: &'a str,
+}
+
 #[derive(Serialize)]
 struct OptionValue<'a> {
     value: &'a str,
@@ -291,6 +301,8 @@ pub struct Report<'a> {
     work: Work,
     /// What the pictures lack without showing it.
     warnings: &'a [&'static str],
+    /// What the scene requires, and what was left out.
+    requirements: Vec<RequirementFact<'a>>,
     /// How much a film flickers.
     flicker: Option<Flicker>,
     /// Frames that were made, and frames that were there already.
@@ -416,6 +428,7 @@ impl<'a> Report<'a> {
             image_hash: image.to_string(),
             work: Work::default(),
             warnings: &[],
+            requirements: Vec::new(),
             flicker: None,
             frames: None,
         }
@@ -449,6 +462,21 @@ impl<'a> Report<'a> {
     #[must_use]
     pub fn warning(self, warnings: &'a [&'static str]) -> Self {
         Self { warnings, ..self }
+    }
+
+    /// The same report, which also tells what the scene requires.
+    #[must_use]
+    pub fn requiring(self, requirements: Option<&'a Requirements>) -> Self {
+        let findings = requirements.into_iter().flat_map(Requirements::findings);
+        let fact = |found: &'a Finding| RequirementFact {
+            feature: found.feature.name(),
+            state: found.state.words(),
+            why: &found.why,
+        };
+        Self {
+            requirements: findings.map(fact).collect(),
+            ..self
+        }
     }
 
     /// The same report, which also tells how often each stage has run.

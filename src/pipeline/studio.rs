@@ -20,6 +20,7 @@ use super::world::{World, folder_of};
 use crate::check::model::Model;
 use crate::diag::Diagnostics;
 use crate::growth::Growth;
+use crate::integrator::requirements::Requirements;
 use crate::integrator::{CancelToken, Solution};
 use crate::interpret::{Organs, Purpose};
 use crate::light::SkyImage;
@@ -331,6 +332,13 @@ impl<'w> Studio<'w> {
         self.shapes = digest.map(|digest| (digest, Arc::downgrade(&scene)));
         self.scene = Some((key, scene.clone()));
         Ok(scene)
+    }
+
+    /// What the scene built last requires; `None` if there is none.
+    #[must_use]
+    pub fn requirements(&self, run: &Run) -> Option<Requirements> {
+        let (_, scene) = self.scene.as_ref()?;
+        Some(Requirements::of(scene, run.options.require.value))
     }
 
     /// The scene before, if somebody still has it and its shapes are those with this digest.

@@ -368,11 +368,13 @@ fn method(options: &Options) -> Method {
     match options.renderer.value {
         Renderer::Path => Method::Path(Path {
             max_depth: options.max_depth.value,
+            kept: options.require.value,
             ..Path::default()
         }),
         Renderer::Raytracer => Method::Raytracer(Raytracer {
             max_depth: options.recursion_depth.value,
             light_samples: options.light_samples.value.get(),
+            kept: options.require.value,
             ..Raytracer::default()
         }),
         Renderer::Photon => Method::Photon(PhotonMapping {
@@ -382,6 +384,7 @@ fn method(options: &Options) -> Method {
             passes: options.passes.value.get(),
             max_depth: options.recursion_depth.value,
             final_gather: options.final_gather.value.0,
+            kept: options.require.value,
             ..PhotonMapping::default()
         }),
         Renderer::Radiosity => Method::Radiosity(Radiosity {
@@ -391,6 +394,7 @@ fn method(options: &Options) -> Method {
             form_factors: options.form_factors.value,
             subdivision_threshold: options.subdivision_threshold.value.0,
             subdivision_depth: options.subdivision_depth.value.0,
+            kept: options.require.value,
             max_depth: options.recursion_depth.value,
             ..Radiosity::default()
         }),

@@ -215,7 +215,7 @@ fn ways() -> Vec<Check> {
                     max_depth: Some(depth.unsigned_abs()),
                     strategies,
                     roulette_after: after,
-                    guided: true,
+                    ..Path::default()
                 };
                 Ok(Experiment::new(furnace.room(rho).scene()?, all_round()).by(path))
             }));

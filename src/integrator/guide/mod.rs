@@ -20,8 +20,7 @@ mod directions;
 mod training;
 
 use super::{RenderContext, RenderError};
-use crate::light::Dome;
-use crate::material::{Material, Optics};
+use crate::material::Optics;
 use crate::scene::{Scene, SurfacePoint};
 use directions::{Arrival, Forest, Root};
 use glam::{DVec2, DVec3, Vec3};
@@ -88,21 +87,13 @@ pub struct Advice<'g> {
 }
 
 impl Guide {
-    /// Learns where light is in `scene`.
-    ///
-    /// `None` where a guide does not pay: if nothing shines or nothing makes caustics, and under a sun or sky, which light a
-    /// scene evenly and would need many more photons.
+    /// Learns where light is in `scene`. It pays where
+    /// [`Feature::Guide`](super::requirements::Feature::Guide) is required: not if nothing shines or nothing makes caustics, nor under a
+    /// sun or sky, which light a scene evenly and would need many more photons.
     ///
     /// # Errors
     /// [`RenderError::Cancelled`] if the context was cancelled meanwhile.
-    pub fn new(scene: &Scene, context: &RenderContext<'_>) -> Result<Option<Self>, RenderError> {
-        let environment = scene.environment();
-        let has_sun = (environment.sun.as_ref()).is_some_and(|sun| !sun.irradiance.is_black());
-        let is_open = has_sun || !Dome::new(environment).is_dark();
-        let makes_caustics = scene.materials().iter().any(Material::is_specular);
-        if is_open || !makes_caustics || scene.emitters().is_empty() {
-            return Ok(None);
-        }
+    pub fn new(scene: &Scene, context: &RenderContext<'_>) -> Result<Self, RenderError> {
         let mut photons = training::photons(scene, context)?;
         photons.sort_by_key(|photon| photon.side);
         let mut guide = Self {
@@ -115,7 +106,7 @@ impl Guide {
             let end = photons.partition_point(|photon| photon.side <= side);
             guide.sides[usize::from(side)] = guide.learn(&mut photons[start..end]);
         }
-        Ok(Some(guide))
+        Ok(guide)
     }
 
     /// Divides space until cells are small enough, and learns directions there.

@@ -18,6 +18,7 @@ pub use sensors::SensorField;
 pub use sums::{Books, Errors, Lighting, OrganLight};
 
 use super::photon::{Aim, Emission, Photons, Plot, trace};
+use super::requirements::{Features, Requirements};
 use super::{Progress, RenderContext, RenderError};
 use crate::math::rng;
 use crate::scene::Scene;
@@ -42,6 +43,8 @@ pub struct Interception {
     /// The plant that each organ belongs to, by organ number; `None` for what is no plant, such as the ground, which then counts
     /// in no total either. Organs beyond the list belong to no plant; an empty list puts all organs into the total.
     pub plants: Vec<Option<u32>>,
+    /// What is done even if the scene does not require it.
+    pub kept: Features,
 }
 
 /// Standard errors to reach, as fractions of what is measured.
@@ -104,7 +107,10 @@ impl Interception {
         }
         let emission = match plot {
             Some(plot) => Emission::into_plot(scene, plot),
-            None => Emission::reaching(scene, Aim::Everything, sensors.bounds()),
+            None => {
+                let requirements = Requirements::of(scene, self.kept);
+                Emission::required(&requirements, scene, Aim::Everything, sensors.bounds())
+            }
         };
         let mut sums = Sums::new(n_organs + 1, sensors.len(), (&self.plants, n_plants));
         let mut next = self.photons.max(1);

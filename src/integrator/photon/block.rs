@@ -62,7 +62,7 @@ pub fn trace<V: Visitor>(
     let mut ledger = Ledger::new(scale);
     let tracer = Tracer {
         scene: emission.scene,
-        bodies: Bodies::new(emission.scene),
+        bodies: Bodies::remembered(emission.scene, emission.has_bodies),
         max_depth: photons.max_depth,
         plot: emission.plot,
         ground: emission.ground,

@@ -8,6 +8,7 @@ use super::plot::Plot;
 use super::source::{Source, Start};
 use super::target::Targets;
 use crate::color::Rgb;
+use crate::integrator::requirements::{Feature, Features, Requirements};
 use crate::light::Dome;
 use crate::light::SunDisk;
 use crate::material::Material;
@@ -54,6 +55,8 @@ pub struct Emission<'s> {
     pub(super) plot: Option<Plot>,
     pub(super) aim: Aim,
     pub(super) has_planes: bool,
+    /// Whether photons remember the clear bodies that they are in.
+    pub(super) has_bodies: bool,
     /// The endless plane that throws light back at what stands on it.
     pub(super) ground: Option<Ground>,
     sources: Vec<Source>,
@@ -89,13 +92,35 @@ impl<'s> Emission<'s> {
     /// As [`Emission::new`], and the photons also pass all of a box besides, in which something measures them.
     #[must_use]
     pub fn reaching(scene: &'s Scene, aim: Aim, besides: Bounds3) -> Self {
+        Self::required(
+            &Requirements::of(scene, Features::NONE),
+            scene,
+            aim,
+            besides,
+        )
+    }
+
+    /// As [`Emission::reaching`], for a scene that requires this. Where [unaimed photons](Feature::UnaimedPhotons) are kept, photons are
+    /// also sent where they can meet nothing that they are for: from lamps into all directions, from far away past all of the scene.
+    #[must_use]
+    pub fn required(
+        requirements: &Requirements,
+        scene: &'s Scene,
+        aim: Aim,
+        besides: Bounds3,
+    ) -> Self {
         let bounds = scene.bounds().union(&besides);
         let ground = (aim == Aim::Everything)
             .then(|| Ground::of(scene, &bounds))
             .flatten();
-        let targets = targets(scene, aim, bounds, ground.as_ref());
+        let mut targets = targets(scene, aim, bounds, ground.as_ref());
+        let strays = requirements.keeps(Feature::UnaimedPhotons);
+        if strays && !targets.is_boundless() && !bounds.is_empty() {
+            targets = Targets::new(&[bounds], true);
+        }
         Self {
             ground,
+            has_bodies: requirements.has(Feature::Bodies),
             ..Self::aimed(scene, aim, targets, bounds)
         }
     }
@@ -124,6 +149,7 @@ impl<'s> Emission<'s> {
             plot: None,
             aim,
             has_planes: scene.stats().planes > 0,
+            has_bodies: true,
             ground: None,
             sources: Vec::new(),
             probabilities: Vec::new(),

@@ -38,13 +38,14 @@ mod view;
 use super::carrier::Carrier;
 use super::medium::Bodies;
 use super::photon::{Aim, Emission, Photons, trace};
+use super::requirements::{Feature, Features, Requirements};
 use super::sources::Sources;
 use super::viewer::Viewer;
 use super::{
     Integrator, Progress, RadianceEstimator, RenderContext, RenderError, Solution, Unreadable,
 };
 use crate::material::Material;
-use crate::math::rng;
+use crate::math::{Bounds3, rng};
 use crate::scene::Scene;
 use final_gather::{FinalGather, GatherSettings};
 use glam::DVec3;
@@ -91,6 +92,8 @@ pub struct PhotonMapping {
     pub final_gather: u32,
     /// Photons that may be stored.
     pub most_stored: u64,
+    /// What is done even if the scene does not require it.
+    pub kept: Features,
 }
 
 impl Default for PhotonMapping {
@@ -103,6 +106,7 @@ impl Default for PhotonMapping {
             max_depth: 8,
             final_gather: 0,
             most_stored: u64::from(u32::MAX - 1),
+            kept: Features::NONE,
         }
     }
 }
@@ -141,37 +145,50 @@ impl Integrator for PhotonMapping {
 }
 
 impl PhotonMapping {
-    /// Photons for caustics in this scene: none where nothing is specular.
+    /// Photons for caustics in this scene: none where nothing is specular, unless they are kept.
     #[must_use]
     pub fn caustic_photons_of(&self, scene: &Scene) -> u64 {
-        let is_specular = scene.materials().iter().any(Material::is_specular);
-        match self.caustic_photons {
-            _ if !is_specular => 0,
-            Some(n) => n,
-            None => CAUSTIC_PHOTONS,
+        self.caustic_photons_if(&Requirements::of(scene, self.kept))
+    }
+
+    fn caustic_photons_if(&self, requirements: &Requirements) -> u64 {
+        let is_required = [Feature::Bounces, Feature::Caustics];
+        if !is_required
+            .into_iter()
+            .all(|feature| requirements.has(feature))
+        {
+            return 0;
         }
+        self.caustic_photons.unwrap_or(CAUSTIC_PHOTONS)
     }
 
     fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>, seed: u64) -> View<'s> {
+        let requirements = Requirements::of(scene, self.kept);
         let carrier = Carrier {
             scene,
-            bodies: Bodies::new(scene),
+            bodies: Bodies::required(scene, &requirements),
             max_depth: self.max_depth,
         };
-        let sources = Sources::new(scene);
+        let sources = Sources::required(scene, &requirements);
         View {
             viewer: Viewer { carrier, sources },
-            gather: self.gather(scene, &maps, seed),
+            gather: self.gather((scene, &requirements), &maps, seed),
             maps,
         }
     }
 
     /// How views find indirect light, unless straight in the maps.
-    fn gather(&self, scene: &Scene, maps: &PhotonSolution, seed: u64) -> Option<Arc<FinalGather>> {
+    fn gather(
+        &self,
+        (scene, requirements): (&Scene, &Requirements),
+        maps: &PhotonSolution,
+        seed: u64,
+    ) -> Option<Arc<FinalGather>> {
         // Rays that find light behind mirrors and glass leave it to the map of caustics; there must be one.
         let is_specular = scene.materials().iter().any(Material::is_specular);
-        let has_caustics_apart = !is_specular || self.caustic_photons_of(scene) > 0;
-        if self.final_gather == 0 || !has_caustics_apart {
+        let has_caustics_apart = !is_specular || self.caustic_photons_if(requirements) > 0;
+        let is_dark = !requirements.has(Feature::Bounces);
+        if self.final_gather == 0 || !has_caustics_apart || is_dark {
             return None;
         }
         let settings = GatherSettings {
@@ -193,18 +210,25 @@ impl PhotonMapping {
         scene: &Scene,
         context: &RenderContext<'_>,
     ) -> Result<PhotonSolution, RenderError> {
-        let n_caustic = self.caustic_photons_of(scene);
+        let requirements = Requirements::of(scene, self.kept);
+        let n_caustic = self.caustic_photons_if(&requirements);
+        let n_global = if requirements.has(Feature::Bounces) {
+            self.global_photons
+        } else {
+            0
+        };
         let wanted = if n_caustic == 0 {
             Wanted::Indirect
         } else {
             Wanted::IndirectWithoutCaustics
         };
-        let (global, n_global_stored) = self.map(scene, wanted, self.global_photons, context)?;
+        let scene = (scene, &requirements);
+        let (global, n_global_stored) = self.map(scene, wanted, n_global, context)?;
         let (caustic, n_caustic_stored) = self.map(scene, Wanted::Caustics, n_caustic, context)?;
         Ok(PhotonSolution {
             global,
             caustic,
-            emitted: (self.global_photons + n_caustic) * u64::from(self.passes),
+            emitted: (n_global + n_caustic) * u64::from(self.passes),
             stored: n_global_stored + n_caustic_stored,
             gather: OnceLock::new(),
         })
@@ -213,7 +237,7 @@ impl PhotonMapping {
     /// Follows the photons of all passes and makes those that are wanted ready; tells how many these are.
     fn map(
         &self,
-        scene: &Scene,
+        (scene, requirements): (&Scene, &Requirements),
         wanted: Wanted,
         n: u64,
         context: &RenderContext<'_>,
@@ -222,8 +246,11 @@ impl PhotonMapping {
             return Ok((None, 0));
         }
         let aim = match wanted {
-            Wanted::Caustics => Aim::Specular,
-            Wanted::Indirect | Wanted::IndirectWithoutCaustics => Aim::Everything,
+            // Kept where nothing is specular, they would have nothing to be aimed at.
+            Wanted::Caustics if scene.materials().iter().any(Material::is_specular) => {
+                Aim::Specular
+            }
+            _ => Aim::Everything,
         };
         let bounds = scene.bounds();
         let center = if bounds.is_empty() {
@@ -234,7 +261,7 @@ impl PhotonMapping {
         let world = World { scene, center };
         let seed = rng::hash(&[context.seed, aim as u64]);
         let pass = Pass {
-            emission: &Emission::new(scene, aim),
+            emission: &Emission::required(requirements, scene, aim, Bounds3::EMPTY),
             world,
             wanted,
             photons: Photons::all(n * u64::from(self.passes), seed, LONGEST_PATH),

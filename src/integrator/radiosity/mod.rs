@@ -43,7 +43,7 @@ mod view;
 
 use super::carrier::Carrier;
 use super::medium::Bodies;
-use super::requirements::has_focused_light;
+use super::requirements::{Feature, Features, Requirements, has_focused_light};
 use super::sources::Sources;
 use super::viewer::Viewer;
 use super::{Integrator, Progress, RadianceEstimator, RenderContext, RenderError};
@@ -58,7 +58,7 @@ use rays::CosineRays;
 use refine::Refinement;
 pub use solution::RadiositySolution;
 use solution::{light_of, of_patches};
-use source::{Lighting, has_stray_light};
+use source::Lighting;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use system::{FormFactors, Patch, Row, Solved};
@@ -131,6 +131,8 @@ pub struct Radiosity {
     pub max_depth: u32,
     /// Bytes that all of it may take.
     pub memory: u64,
+    /// What is done even if the scene does not require it.
+    pub kept: Features,
 }
 
 impl Default for Radiosity {
@@ -144,6 +146,7 @@ impl Default for Radiosity {
             subdivision_depth: 3,
             max_depth: 8,
             memory: 1 << 32,
+            kept: Features::NONE,
         }
     }
 }
@@ -203,6 +206,13 @@ impl Integrator for Radiosity {
     }
 }
 
+/// What light is asked for with.
+struct Light<'a, 's> {
+    carrier: &'a Carrier<'s>,
+    sources: &'a Sources<'s>,
+    requirements: &'a Requirements,
+}
+
 /// Patches with their light.
 struct Sent {
     patches: Vec<Patch>,
@@ -213,12 +223,13 @@ struct Sent {
 
 impl Radiosity {
     fn look<'s>(&self, scene: &'s Scene, solution: Arc<RadiositySolution>) -> View<'s> {
+        let requirements = Requirements::of(scene, self.kept);
         let carrier = Carrier {
             scene,
-            bodies: Bodies::new(scene),
+            bodies: Bodies::required(scene, &requirements),
             max_depth: self.max_depth,
         };
-        let sources = Sources::new(scene);
+        let sources = Sources::required(scene, &requirements);
         View {
             viewer: Viewer { carrier, sources },
             solution,
@@ -231,15 +242,21 @@ impl Radiosity {
         context: &RenderContext<'_>,
         early: &mut dyn FnMut(&dyn Fn() -> super::Solution),
     ) -> Result<RadiositySolution, RenderError> {
+        let requirements = Requirements::of(scene, self.kept);
         let carrier = Carrier {
             scene,
-            bodies: Bodies::new(scene),
+            bodies: Bodies::required(scene, &requirements),
             max_depth: LONGEST_WAY,
         };
-        let sources = Sources::new(scene);
+        let sources = Sources::required(scene, &requirements);
         let mut mesh = self.mesh(scene)?;
-        let sent = self.solve_patches(&mesh, (&carrier, &sources), context, early)?;
-        let irradiance = self.elements(&mut mesh, &sent, (&carrier, &sources), context);
+        let light = Light {
+            carrier: &carrier,
+            sources: &sources,
+            requirements: &requirements,
+        };
+        let sent = self.solve_patches(&mesh, &light, context, early)?;
+        let irradiance = self.elements(&mut mesh, &sent, &light, context);
         if context.cancel.is_cancelled() {
             return Err(RenderError::Cancelled { partial: None });
         }
@@ -269,11 +286,12 @@ impl Radiosity {
     fn solve_patches(
         &self,
         mesh: &Mesh,
-        (carrier, sources): (&Carrier<'_>, &Sources<'_>),
+        light: &Light<'_, '_>,
         context: &RenderContext<'_>,
         early: &mut dyn FnMut(&dyn Fn() -> super::Solution),
     ) -> Result<Sent, RenderError> {
-        let patches = self.lighting(mesh, (carrier, sources), context).patches();
+        let carrier = light.carrier;
+        let patches = self.lighting(mesh, light, context).patches();
         let solver = self.solver_for(&patches)?;
         let solved = match solver {
             Solver::Gather => {
@@ -318,15 +336,16 @@ impl Radiosity {
     fn lighting<'a, 's>(
         &self,
         mesh: &'a Mesh,
-        (carrier, sources): (&'a Carrier<'s>, &'a Sources<'s>),
+        light: &Light<'a, 's>,
         context: &RenderContext<'a>,
     ) -> Lighting<'a, 's> {
         Lighting {
             mesh,
-            carrier,
-            sources,
+            carrier: light.carrier,
+            sources: light.sources,
             seed: context.seed,
-            n_stray: if has_stray_light(carrier, sources) {
+            bounces: light.requirements.has(Feature::Bounces),
+            n_stray: if light.requirements.has(Feature::UnaskedLight) {
                 self.rays_per_row()
             } else {
                 0
@@ -373,16 +392,17 @@ impl Radiosity {
         &self,
         mesh: &mut Mesh,
         solution: &Sent,
-        (carrier, sources): (&Carrier<'_>, &Sources<'_>),
+        light: &Light<'_, '_>,
         context: &RenderContext<'_>,
     ) -> Vec<[Rgb; 2]> {
+        let carrier = light.carrier;
         let Sent {
             patches, solved, ..
         } = solution;
         let gathered = |mesh: &Mesh, first: usize| {
             let factors = self.factors(mesh, carrier, context.seed);
-            let lighting = self.lighting(mesh, (carrier, sources), context);
-            let light = |at: usize| {
+            let lighting = self.lighting(mesh, light, context);
+            let light_of = |at: usize| {
                 let node = &mesh.nodes[at];
                 [0, 1].map(|side| {
                     let is_wanted = node.children == NONE
@@ -396,7 +416,7 @@ impl Radiosity {
             };
             (first..mesh.nodes.len())
                 .into_par_iter()
-                .map(light)
+                .map(light_of)
                 .collect()
         };
         let mut irradiance = if solution.is_shot && patches.len() <= FEW_PATCHES {

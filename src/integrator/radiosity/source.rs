@@ -10,10 +10,10 @@ use crate::integrator::path::Strategies;
 use crate::integrator::sources::{Reach, Shading, Sources, receiver};
 use crate::integrator::{CancelToken, RayCounts};
 use crate::light::Receiver;
-use crate::material::{LobeKind, Material, Scattering, ScatteringFrame, Side, Transport};
+use crate::material::{Scattering, ScatteringFrame, Side, Transport};
 use crate::math::{Ray, rng};
 use crate::sampler::{Sampler, SamplerKind, Use};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -40,30 +40,12 @@ pub(super) struct Lighting<'a, 's> {
     pub(super) carrier: &'a Carrier<'s>,
     pub(super) sources: &'a Sources<'s>,
     pub(super) seed: u64,
+    /// Whether surfaces send light to each other at all.
+    pub(super) bounces: bool,
     /// Rays by which light is looked for that sources are not asked for; 0 where there is none.
     pub(super) n_stray: u32,
     /// Once it is set, nothing more is asked.
     pub(super) cancel: &'a CancelToken,
-}
-
-/// Whether light may reach matt surfaces on ways on which no source is asked for it: off mirrors, glass and gloss, or from land
-/// below the horizon and planes that shine.
-pub(super) fn has_stray_light(carrier: &Carrier<'_>, sources: &Sources<'_>) -> bool {
-    let is_plain = |material: &Material| {
-        let mut lobes = material.lobes.iter();
-        lobes.all(|lobe| lobe.kind == LobeKind::Through)
-    };
-    let materials = carrier.scene.materials();
-    let shines = carrier.scene.stats().planes > 0 && materials.iter().any(Material::is_emitter);
-    let below = [
-        DVec3::NEG_Z,
-        DVec3::new(0.6, 0.0, -0.8),
-        DVec3::new(-0.8, 0.0, -0.6),
-    ];
-    let is_unasked = |w: DVec3| {
-        !sources.sky_radiance(w).is_black() && sources.sky_pdf_solid_angle(w, Reach::First) <= 0.0
-    };
-    shines || !materials.iter().all(is_plain) || below.into_iter().any(is_unasked)
 }
 
 impl Lighting<'_, '_> {
@@ -74,6 +56,9 @@ impl Lighting<'_, '_> {
             let at = &self.mesh.nodes[*node as usize];
             let optics = self.optics(at);
             let sides = [0, 1].map(|side| {
+                if !self.bounces {
+                    return PatchSide::default();
+                }
                 let mut own = PatchSide {
                     reflectance: optics[side].reflectance,
                     transmittance: optics[side].transmittance,

@@ -208,6 +208,7 @@ fn furnaces_are_as_in_the_table() {
         carrier: &laid.carrier,
         sources: &sources,
         seed: 1,
+        bounces: true,
         n_stray: 0,
         cancel: &cancel,
     };
@@ -430,6 +431,7 @@ fn endless_ground_does_not_hide_what_stands_on_it() {
         carrier: &laid.carrier,
         sources: &sources,
         seed: 1,
+        bounces: true,
         n_stray: 0,
         cancel: &cancel,
     };

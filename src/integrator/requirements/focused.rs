@@ -1,4 +1,4 @@
-//! What a scene needs of a method of light transport, so that a picture that lacks something says so.
+//! Light that methods which start at the camera do not find, so that a picture that lacks it says so.
 
 use crate::light::Light;
 use crate::material::{Lobe, LobeKind, Material};
