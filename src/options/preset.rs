@@ -1,42 +1,71 @@
 //! Named sets of values for `--quality`.
 
-use super::value::Quality;
+use super::value::{Quality, Renderer};
 use super::{Options, Origin};
 
-/// The values of a quality. `preview` is the defaults themselves.
-const fn values(quality: Quality) -> &'static [(&'static str, &'static str)] {
-    match quality {
-        Quality::Draft => &[
+/// Values of each quality, for each method, that differ from the defaults: points of the fronts that `cargo bench --bench corpus` has
+/// measured over the scenes of `tests/corpus.csv`; `tests/presets.rs` demands it.
+const BUILT_IN: [(Quality, Renderer, Values); 9] = [
+    (
+        Quality::Draft,
+        Renderer::Path,
+        &[("samples", "8"), ("max-depth", "6")],
+    ),
+    (
+        Quality::Draft,
+        Renderer::Photon,
+        &[
             ("samples", "8"),
-            ("max-depth", "6"),
             ("global-photons", "100000"),
             ("caustic-photons", "100000"),
             ("final-gather", "0"),
         ],
-        Quality::Preview => &[],
-        Quality::Final => &[
-            ("samples", "512"),
-            ("global-photons", "10000000"),
+    ),
+    (
+        Quality::Draft,
+        Renderer::Radiosity,
+        &[
+            ("samples", "4"),
+            ("subdivision-threshold", "0.3"),
+            ("subdivision-depth", "1"),
+            ("hemicube-pixels", "16"),
+        ],
+    ),
+    (Quality::Draft, Renderer::Raytracer, &[("samples", "8")]),
+    (Quality::Preview, Renderer::Photon, &[("samples", "16")]),
+    (Quality::Preview, Renderer::Radiosity, &[("samples", "16")]),
+    (Quality::Final, Renderer::Path, &[("samples", "512")]),
+    (
+        Quality::Final,
+        Renderer::Photon,
+        &[
+            ("samples", "64"),
+            ("global-photons", "16000000"),
+            ("caustic-photons", "16000000"),
             ("final-gather", "1024"),
         ],
-    }
-}
+    ),
+    (
+        Quality::Final,
+        Renderer::Radiosity,
+        &[
+            ("samples", "32"),
+            ("subdivision-threshold", "0.05"),
+            ("subdivision-depth", "4"),
+            ("hemicube-pixels", "48"),
+        ],
+    ),
+];
 
-/// What each `--quality` stands for: the values here, or those of a file such as `understory trade` writes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Presets([Vec<(String, String)>; 3]);
+/// Options and their values.
+type Values = &'static [(&'static str, &'static str)];
 
-impl Default for Presets {
-    fn default() -> Self {
-        Self(QUALITIES.map(|quality| {
-            let owned = |&(key, text): &(&str, &str)| (key.to_owned(), text.to_owned());
-            values(quality).iter().map(owned).collect()
-        }))
-    }
-}
+/// What each `--quality` stands for: what is built in, for each method its own; or what a file says, such as `understory trade` writes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Presets([Option<Vec<(String, String)>>; 3]);
 
 /// All qualities, in the order of their numbers.
-const QUALITIES: [Quality; 3] = [Quality::Draft, Quality::Preview, Quality::Final];
+pub const QUALITIES: [Quality; 3] = [Quality::Draft, Quality::Preview, Quality::Final];
 
 impl Presets {
     /// Reads presets in TOML: a table for each quality, with options of the command line. Qualities that it does not name stay as they are.
@@ -67,15 +96,25 @@ impl Presets {
                     .map_err(|error| format!("in `[{name}]`: {error}"))?;
                 values.push((key.clone(), text));
             }
-            presets.0[quality as usize] = values;
+            presets.0[quality as usize] = Some(values);
         }
         Ok(presets)
     }
 
-    /// The values of a quality, key and text.
+    /// The values of a quality, key and text. Those of a file may name the method, and hold for any; those that are built in are for
+    /// this method.
     #[must_use]
-    pub fn of(&self, quality: Quality) -> &[(String, String)] {
-        &self.0[quality as usize]
+    pub fn of(&self, quality: Quality, renderer: Renderer) -> Vec<(&str, &str)> {
+        if let Some(values) = &self.0[quality as usize] {
+            let pairs = values.iter();
+            return pairs
+                .map(|(key, text)| (key.as_str(), text.as_str()))
+                .collect();
+        }
+        let fitting = BUILT_IN
+            .iter()
+            .filter(|row| row.0 == quality && row.1 == renderer);
+        fitting.flat_map(|row| row.2.iter().copied()).collect()
     }
 }
 
@@ -85,7 +124,8 @@ impl Options {
     /// Called once, after both have been read: each of them may have chosen the preset.
     pub fn apply_preset(&mut self) {
         let quality = self.quality.value;
-        for (key, text) in self.presets.clone().of(quality) {
+        let presets = self.presets.clone();
+        for (key, text) in presets.of(quality, self.renderer.value) {
             self.set(key, text, Origin::Preset(quality.name()))
                 .expect("invariant: presets hold known options and values");
         }
@@ -99,13 +139,18 @@ mod tests {
     #[test]
     fn every_preset_applies_and_yields_to_flags() {
         for quality in ["draft", "preview", "final"] {
-            let mut options = Options::default();
-            options.set("quality", quality, Origin::Flag).unwrap();
-            options.set("max-depth", "2", Origin::Flag).unwrap();
-            options.apply_preset();
-            assert_eq!(options.max_depth.value, Some(2));
-            let samples = options.samples.value.get();
-            assert_eq!(samples, [8, 64, 512][options.quality.value as usize]);
+            for renderer in ["path", "photon", "radiosity", "raytracer"] {
+                let mut options = Options::default();
+                options.set("quality", quality, Origin::Flag).unwrap();
+                options.set("renderer", renderer, Origin::Flag).unwrap();
+                options.set("max-depth", "2", Origin::Flag).unwrap();
+                options.apply_preset();
+                assert_eq!(options.max_depth.value, Some(2));
+                let samples = options.samples.value.get();
+                if renderer == "path" {
+                    assert_eq!(samples, [8, 64, 512][options.quality.value as usize]);
+                }
+            }
         }
     }
 
@@ -121,8 +166,15 @@ mod tests {
         assert_eq!(options.samples.value.get(), 4);
         assert_eq!(options.samples.origin, Origin::Preset("draft"));
         assert_eq!(options.max_depth.value, None);
-        let kept = options.presets.of(Quality::Final);
-        assert_eq!(kept, Presets::default().of(Quality::Final));
+        let of = |presets: &Presets| {
+            let values = presets.of(Quality::Final, Renderer::Photon);
+            values
+                .iter()
+                .map(|(key, _)| (*key).to_owned())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(of(&options.presets), of(&Presets::default()));
+        assert!(of(&options.presets).contains(&"global-photons".to_owned()));
         for (wrong, expected) in [
             ("[draft", "not TOML"),
             ("[fast]\nsamples = 1", "`fast` is no preset"),

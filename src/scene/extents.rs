@@ -2,6 +2,7 @@
 
 use super::Scene;
 use super::description::{MaterialId, OrganId};
+use super::emitter::Emitter;
 use super::group::{Group, Item, ItemKind, ShapeRecord};
 use super::query::{FIRST_PLANE, Hit};
 use crate::geometry::unit::UnitShape;
@@ -44,8 +45,13 @@ pub enum Piece {
         /// Diagonal of its box, metres.
         size: f64,
     },
-    /// A ball, frustum or box; so far from any of its points, in metres, its surface is about flat where it is not an edge.
-    Body(f64),
+    /// A ball, frustum or box.
+    Body {
+        /// The primitive that it is.
+        first: PrimitiveId,
+        /// So far from any of its points, in metres, its surface is about flat where it is not an edge.
+        flat: f64,
+    },
     /// Anything else.
     Large,
 }
@@ -142,10 +148,10 @@ impl Scene {
             && group.solids[index].form != UnitShape::Disk
         {
             let solid = &group.solids[index];
-            return Piece::Body(flat_extent(
-                solid.form,
-                &(to_world * solid.to_unit.inverse()),
-            ));
+            return Piece::Body {
+                first: primitive,
+                flat: flat_extent(solid.form, &(to_world * solid.to_unit.inverse())),
+            };
         }
         if items.len() > FEW {
             return Piece::Large;
@@ -170,6 +176,26 @@ impl Scene {
             area,
             size: bounds.diagonal().length(),
         }
+    }
+}
+
+impl Scene {
+    /// Area of the surface of a single primitive, m², one side of it; 0 of planes and of what is too small to have any.
+    #[must_use]
+    pub fn area_of(&self, primitive: PrimitiveId) -> f64 {
+        if primitive.0 >= FIRST_PLANE {
+            return 0.0;
+        }
+        let located = self.locate(primitive);
+        let maps = located.maps(&self.to_root);
+        let to_world = maps.fold(DAffine3::IDENTITY, |all, map| all * map.inverse());
+        let group = located.group;
+        let Some(item) = group.places[located.number as usize] else {
+            return 0.0;
+        };
+        let shape = group.shape_of(located.number);
+        let surface = Emitter::new(group, item.kind(), shape, &to_world, primitive);
+        surface.map_or(0.0, |surface| surface.area())
     }
 }
 
@@ -345,8 +371,10 @@ mod tests {
         };
         assert!((area - 4.0 * PI).abs() < 1e-9);
         assert!(
-            matches!(scene.piece(PrimitiveId(2)), Piece::Body(flat) if (flat - 0.15).abs() < 1e-9)
+            matches!(scene.piece(PrimitiveId(2)), Piece::Body { first: PrimitiveId(2), flat } if (flat - 0.15).abs() < 1e-9)
         );
+        assert!((scene.area_of(PrimitiveId(0)) - 6.0).abs() < 1e-9);
+        assert!((scene.area_of(PrimitiveId(1)) - 4.0 * PI).abs() < 1e-9);
     }
 
     #[test]

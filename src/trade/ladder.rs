@@ -4,7 +4,9 @@
 //! what is dear is spent where it helps most; its [`Rung`]s are settings of the table of options, and nothing else.
 
 use super::fit::Floor;
+use crate::options::preset::QUALITIES;
 use crate::options::value::Renderer;
+use crate::options::{Presets, TABLE};
 
 /// A way to make pictures, from cheap to dear.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +60,9 @@ pub fn families(needs: Needs, only: Option<Renderer>) -> Vec<Family> {
         passes(needs),
         even_mesh(),
         areas(needs),
+        presets("path, presets", Renderer::Path),
+        presets("photon, presets", Renderer::Photon),
+        presets("radiosity, presets", Renderer::Radiosity),
     ];
     let is_wanted = |family: &Family| only.is_none_or(|only| family.renderer == only);
     all.into_iter().filter(is_wanted).collect()
@@ -102,13 +107,10 @@ fn raytracer() -> Family {
     }
 }
 
-/// How photons are shared between all surfaces and those that are mirrors or glass.
+/// Photons to all surfaces, and as many to mirrors and glass if there are any.
 fn shares(needs: Needs, n: u32) -> [(&'static str, u32); 2] {
-    if needs.has_specular {
-        [("global-photons", n / 2), ("caustic-photons", n / 2)]
-    } else {
-        [("global-photons", n), ("caustic-photons", 0)]
-    }
+    let caustic = if needs.has_specular { n } else { 0 };
+    [("global-photons", n), ("caustic-photons", caustic)]
 }
 
 /// Photons looked at directly. Their error falls with N^(2/3), that of samples with their number: half as many more of them for
@@ -134,7 +136,7 @@ fn photons(needs: Needs) -> Family {
 /// Photons by final gathering.
 fn gathered(needs: Needs) -> Family {
     let rungs = (0..5).map(|k| {
-        let n = 50_000 * 4_u32.pow(k);
+        let n = 62_500 * 4_u32.pow(k);
         let mut settings = shares(needs, n).to_vec();
         settings.extend([
             ("final-gather", (64 << k).min(1024)),
@@ -212,7 +214,7 @@ const RADIOSITY: [(&str, u32, u32, u32); 6] = [
     ("0.5", 0, 8, 4),
     ("0.3", 1, 16, 4),
     ("0.15", 2, 24, 8),
-    ("0.1", 3, 32, 16),
+    ("0.15", 3, 32, 16),
     ("0.05", 4, 48, 32),
     ("0.03", 5, 64, 64),
 ];
@@ -268,6 +270,67 @@ fn even_mesh() -> Family {
     }
 }
 
+/// Options that presets change.
+const PRESET: [&str; 8] = [
+    "samples",
+    "max-depth",
+    "global-photons",
+    "caustic-photons",
+    "final-gather",
+    "subdivision-threshold",
+    "subdivision-depth",
+    "hemicube-pixels",
+];
+
+/// What `--quality draft`, `preview` and `final` stand for unless somebody says otherwise.
+fn presets(name: &'static str, renderer: Renderer) -> Family {
+    let built_in = Presets::default();
+    let rungs = QUALITIES.into_iter().map(|quality| {
+        let values = built_in.of(quality, renderer);
+        let value = |key: &'static str| {
+            let preset = values.iter().find(|(known, _)| *known == key);
+            let default = || {
+                TABLE
+                    .iter()
+                    .find(|row| row.key == key)
+                    .map_or("", |row| row.default)
+            };
+            (
+                key,
+                preset.map_or_else(default, |(_, text)| text).to_owned(),
+            )
+        };
+        let matters = |key: &&'static str| match renderer {
+            Renderer::Path => ["samples", "max-depth"].contains(key),
+            Renderer::Photon => {
+                !key.starts_with("sub") && !key.starts_with("hemi") && *key != "max-depth"
+            }
+            Renderer::Radiosity => {
+                *key == "samples" || key.starts_with("sub") || key.starts_with("hemi")
+            }
+            Renderer::Raytracer => *key == "samples",
+        };
+        Rung {
+            knob: 1.0 + f64::from(quality as u8),
+            settings: PRESET.into_iter().filter(matters).map(value).collect(),
+        }
+    });
+    let rungs: Vec<Rung> = rungs.collect();
+    Family {
+        name,
+        knob: "preset",
+        renderer,
+        floor: Floor::Some,
+        theory: None,
+        is_contender: false,
+        rungs: if renderer == Renderer::Photon {
+            rungs.into_iter().map(automatic_area).collect()
+        } else {
+            rungs
+        },
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -285,7 +348,7 @@ mod tests {
             let names: BTreeSet<&str> = families.iter().map(|family| family.name).collect();
             assert_eq!(names.len(), families.len());
             for family in &families {
-                assert!(family.rungs.len() > 3, "{}", family.name);
+                assert!(family.rungs.len() >= 3, "{}", family.name);
                 assert!(family.rungs.is_sorted_by(|a, b| a.knob < b.knob));
                 for rung in &family.rungs {
                     let mut options = Options::default();

@@ -10,7 +10,7 @@
 //! How large the kernel may be is told by the photons in it ([`Estimate::is_even`]): the light inside may differ from that outside by
 //! no more than chance makes it, nor its middle lie aside.
 //!
-//! Of a flat piece smaller than the kernel the whole is taken: all its photons of one side over its area, which is exact.
+//! Of a piece smaller than the kernel the whole is taken ([`pieces`](super::pieces)): all its photons of one side over its area.
 
 use super::grid::Grid;
 use super::stored::{Stored, facing};

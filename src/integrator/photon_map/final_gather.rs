@@ -108,7 +108,7 @@ impl View<'_> {
         // A level that is wider than a leaf knows nothing of it.
         let flat = match *spot.piece {
             Piece::Flat { size, .. } => size,
-            Piece::Body(extent) => extent,
+            Piece::Body { flat, .. } => flat,
             Piece::Large => f64::INFINITY,
         };
         let asked = Asked {

@@ -8,7 +8,7 @@
 
 use super::estimate::Hidden;
 use super::grid::{Grid, Outline};
-use super::pieces::PieceLight;
+use super::pieces::{PieceLight, small};
 use super::stored::{PackedNormal, facing};
 use crate::color::Rgb;
 use crate::math::Ray;
@@ -108,7 +108,7 @@ pub(super) struct Layer {
 pub(super) struct IrradianceMap {
     /// What positions are relative to.
     pub(super) center: DVec3,
-    /// Flat pieces of up to twice this size have one irradiance for each side, metres.
+    /// Pieces that are [`small`] for it have one irradiance for each side, metres.
     pub(super) radius: f64,
     /// The finest first.
     pub(super) layers: Vec<Layer>,
@@ -225,7 +225,7 @@ impl IrradianceMap {
 
     /// Irradiance of the side `normal` of a small piece.
     fn whole(&self, point: &SurfacePoint, piece: &Piece, normal: DVec3) -> Rgb {
-        let Piece::Flat { first, .. } = *piece else {
+        let Some(first) = small(piece, self.radius) else {
             return Rgb::BLACK;
         };
         let key = (first, normal.dot(point.normal_g) < 0.0);
@@ -235,7 +235,7 @@ impl IrradianceMap {
 
     /// Whether the piece is so small that its light is known as a whole.
     pub(super) fn knows_wholly(&self, piece: &Piece) -> bool {
-        matches!(piece, Piece::Flat { size, .. } if *size <= 2.0 * self.radius)
+        small(piece, self.radius).is_some()
     }
 
     /// Places of the world on its surfaces, not farther apart than the usual kernel shows, with the normal of the side.

@@ -27,7 +27,7 @@ const ALPHA: f64 = 2.0 / 3.0;
 /// The light of a scene after some passes.
 pub(super) struct Progressive<'s> {
     world: World<'s>,
-    /// Flat pieces of up to twice this size have their light as a whole, metres.
+    /// Pieces that are small for it have their light as a whole, metres.
     usual: f64,
     /// The coarsest first; radii are those of the first pass.
     layers: Vec<SpotLayer>,
@@ -53,12 +53,12 @@ impl<'s> Progressive<'s> {
         let usual = radii.usual * last;
         let (pieces, photons) = split_off_pieces(world.scene, photons, usual);
         let places = if radii.largest > radii.usual {
-            anywhere(&photons, usual * SPACING)
+            anywhere((world.scene, &photons), usual * SPACING)
         } else {
             Vec::new()
         };
         let width = radii.largest * SPACING * last;
-        let known = cells(&photons, width);
+        let known = cells((world.scene, &photons), width);
         let mut layers = spots(&world, photons, radii, SPACING * last);
         if layers.first().is_none_or(|layer| layer.spacing != width) {
             let empty = SpotLayer {

@@ -29,7 +29,7 @@ const LOOKED_AT: usize = 1 << 17;
 pub(super) struct Radii {
     /// Where there is no reason for a smaller one.
     pub(super) largest: f64,
-    /// As large as the scene asks for as a whole: flat pieces that are smaller have their light as a whole.
+    /// As large as the scene asks for as a whole: pieces that are smaller have their light as a whole.
     pub(super) usual: f64,
     /// Never smaller.
     pub(super) smallest: f64,

@@ -10,11 +10,11 @@ use super::estimate::{Estimate, Measured, Spot, estimate, measure};
 use super::grid::{Grid, cell};
 use super::irradiance::Sample;
 use super::radius::Radii;
-use super::stored::{PackedNormal, Stored, facing, is_matt_somewhere};
+use super::stored::{PackedNormal, Stored, facing, flat_extent, is_matt_somewhere};
 use crate::color::Rgb;
 use crate::math::Ray;
 use crate::math::frame::Frame;
-use crate::scene::{Piece, Scene};
+use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -81,11 +81,11 @@ pub(super) struct SpotLayer {
 pub(super) type Key = ([i32; 3], u8);
 
 impl Place {
-    fn of(photon: &Stored) -> Self {
+    fn of(photon: &Stored, scene: &Scene) -> Self {
         Self {
             position: photon.position().as_vec3(),
             normal: photon.packed_normal(),
-            extent: photon.flat_extent(),
+            extent: photon.flat_extent(scene),
             is_made: false,
         }
     }
@@ -175,7 +175,12 @@ pub(super) fn spots(
     spacing: f64,
 ) -> Vec<SpotLayer> {
     let mut layers = Vec::new();
-    let places = thinned(&photons, Vec::new(), radii.largest * spacing, |_| true);
+    let places = thinned(
+        (world.scene, &photons),
+        Vec::new(),
+        radii.largest * spacing,
+        |_| true,
+    );
     let mut next = Some(Level {
         world: *world,
         radii,
@@ -259,9 +264,12 @@ impl<'s> Level<'s> {
         let more: Vec<Place> = more.collect();
         let mut cells: Vec<Key> = again.iter().map(|place| place.key(width)).collect();
         cells.par_sort_unstable();
-        let places = thinned(&self.photons, more, 0.5 * width, |place| {
-            cells.binary_search(&place.key(width)).is_ok()
-        });
+        let places = thinned(
+            (self.world.scene, &self.photons),
+            more,
+            0.5 * width,
+            |place| cells.binary_search(&place.key(width)).is_ok(),
+        );
         Self {
             radius: 0.5 * self.radius,
             width: 0.5 * width,
@@ -273,7 +281,7 @@ impl<'s> Level<'s> {
 }
 
 /// The cells of this width that photons lie in, sorted.
-pub(super) fn cells(photons: &[Stored], width: f64) -> Vec<Key> {
+pub(super) fn cells(photons: (&Scene, &[Stored]), width: f64) -> Vec<Key> {
     let places = thinned(photons, Vec::new(), width, |_| true);
     places.iter().map(|place| place.key(width)).collect()
 }
@@ -286,7 +294,7 @@ pub(super) fn newly_found(
     known: &mut Vec<Key>,
 ) -> Vec<SpotLight> {
     let is_new = |place: &Place| known.binary_search(&place.key(width)).is_err();
-    let places = thinned(photons, Vec::new(), width, is_new);
+    let places = thinned((world.scene, photons), Vec::new(), width, is_new);
     known.extend(places.iter().map(|place| place.key(width)));
     known.sort_unstable();
     let spot = |place: &Place| SpotLight::new(world, *place, radius);
@@ -294,7 +302,7 @@ pub(super) fn newly_found(
 }
 
 /// Places of photons about so far apart, whatever the light there.
-pub(super) fn anywhere(photons: &[Stored], width: f64) -> Vec<(Vec3, PackedNormal)> {
+pub(super) fn anywhere(photons: (&Scene, &[Stored]), width: f64) -> Vec<(Vec3, PackedNormal)> {
     let places = thinned(photons, Vec::new(), width, |_| true);
     let place = |place: &Place| (place.position, place.normal);
     places.iter().map(place).collect()
@@ -341,10 +349,7 @@ fn between(world: &World<'_>, place: &Place, width: f64) -> impl Iterator<Item =
         is_same.then(|| Place {
             position: (point.position - center).as_vec3(),
             normal: PackedNormal::new(side),
-            extent: match scene.piece(point.primitive) {
-                Piece::Body(flat) => flat,
-                Piece::Flat { .. } | Piece::Large => f64::INFINITY,
-            },
+            extent: flat_extent(&scene.piece(point.primitive)),
             is_made: true,
         })
     })
@@ -352,14 +357,15 @@ fn between(world: &World<'_>, place: &Place, width: f64) -> impl Iterator<Item =
 
 /// Of the places of `photons`, then `more`, those that are `wanted`: the first in each cell of this width.
 fn thinned(
-    photons: &[Stored],
+    (scene, photons): (&Scene, &[Stored]),
     more: Vec<Place>,
     width: f64,
     wanted: impl Fn(&Place) -> bool + Sync,
 ) -> Vec<Place> {
     // Chunk by chunk, so that few keys are in memory at once.
     let chunks = photons.par_chunks(CHUNK).map(|chunk| {
-        let places = chunk.iter().map(Place::of).filter(|place| wanted(place));
+        let places = chunk.iter().map(|photon| Place::of(photon, scene));
+        let places = places.filter(|place| wanted(place));
         firsts(places.collect(), width)
     });
     let mut places: Vec<Place> = chunks.flatten_iter().collect();

@@ -35,7 +35,7 @@ pub(super) struct Stored {
     kind: Kind,
     is_front: bool,
     power: Vec3,
-    /// The number of a flat piece in two halves, or how far a body is flat.
+    /// The number of the flat piece or the body in two halves.
     piece: [u32; 2],
 }
 
@@ -53,10 +53,10 @@ impl Stored {
         // Alpha is in the scattering that the picture multiplies with; the light itself is what arrives before alpha.
         let power = hit.power / hit.optics.alpha;
         let normal = facing(hit.point.normal_g, hit.wo);
-        let (kind, piece) = match on {
-            Piece::Flat { first, .. } => (Kind::Flat, [(first.0 >> 32) as u32, first.0 as u32]),
-            Piece::Body(flat) => (Kind::Body, [0, (flat as f32).to_bits()]),
-            Piece::Large => (Kind::Large, [0, 0]),
+        let (kind, first) = match on {
+            Piece::Flat { first, .. } => (Kind::Flat, first.0),
+            Piece::Body { first, .. } => (Kind::Body, first.0),
+            Piece::Large => (Kind::Large, 0),
         };
         Self {
             position: (hit.point.position - center).as_vec3(),
@@ -64,7 +64,7 @@ impl Stored {
             kind,
             is_front: hit.point.is_front,
             power: DVec3::from_array(power.to_array()).as_vec3(),
-            piece,
+            piece: [(first >> 32) as u32, first as u32],
         }
     }
 
@@ -106,18 +106,30 @@ impl Stored {
         self.is_front
     }
 
-    /// The flat piece that it lies on.
-    pub(super) fn piece(&self) -> Option<PrimitiveId> {
+    /// What it lies on; a photon knows nothing of large surfaces.
+    pub(super) fn piece(&self, scene: &Scene) -> Piece {
         let [high, low] = self.piece.map(u64::from);
-        (self.kind == Kind::Flat).then_some(PrimitiveId(high << 32 | low))
+        match self.kind {
+            Kind::Flat | Kind::Body => scene.piece(PrimitiveId(high << 32 | low)),
+            Kind::Large => Piece::Large,
+        }
     }
 
     /// How far the body that it lies on is about flat, metres; infinite on others.
-    pub(super) fn flat_extent(&self) -> f64 {
+    pub(super) fn flat_extent(&self, scene: &Scene) -> f64 {
+        // Most photons lie on others, which need not be looked at for this.
         match self.kind {
-            Kind::Body => f64::from(f32::from_bits(self.piece[1])),
+            Kind::Body => flat_extent(&self.piece(scene)),
             Kind::Flat | Kind::Large => f64::INFINITY,
         }
+    }
+}
+
+/// How far a body is about flat, metres; infinite of others.
+pub(super) fn flat_extent(piece: &Piece) -> f64 {
+    match piece {
+        Piece::Body { flat, .. } => *flat,
+        Piece::Flat { .. } | Piece::Large => f64::INFINITY,
     }
 }
 
