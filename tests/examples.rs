@@ -48,6 +48,7 @@ fn all_examples_are_here() {
         names,
         [
             "bush.rgg",
+            "crop.rgg",
             "dieback.rgg",
             "forest.rgg",
             "koch.rgg",
@@ -63,6 +64,7 @@ fn small_models_make_pictures() {
     for (name, heights) in [
         ("koch.rgg", 3.5..3.8),
         ("bush.rgg", 1.5..3.5),
+        ("crop.rgg", 0.9..1.4),
         ("poplar.rgg", 8.0..14.0),
         ("spruce.rgg", 12.0..18.0),
     ] {
