@@ -80,7 +80,7 @@ pub fn split(ladder: &Ladder) -> Plot {
         points: ladder
             .rungs
             .iter()
-            .map(|rung| [rung.work(), value(rung), 0.0])
+            .map(|rung| [rung.knob, value(rung), 0.0])
             .collect(),
     };
     let mut series = vec![
@@ -93,20 +93,19 @@ pub fn split(ladder: &Ladder) -> Plot {
             name: String::new(),
             color: GRAY,
             style: Style::Thin,
-            points: curve(ladder.rungs.iter().map(Measured::work), |x| fit.at(x)),
+            points: curve(ladder.rungs.iter().map(|rung| rung.knob), |x| fit.at(x)),
         });
     }
-    let has_patches = ladder.rungs.iter().any(|rung| rung.patches.is_some());
     Plot {
         title: ladder.name.clone(),
         axes: [
-            match (has_patches, ladder.knob.as_str()) {
-                (true, _) => "patches",
-                (false, "samples") => "samples per pixel",
-                (false, "photons") => "photons",
-                (false, "passes") => "passes",
-                (false, "photon area") => "photon area, m²",
-                (false, _) => "work",
+            match ladder.knob.as_str() {
+                "samples" => "samples per pixel",
+                "photons" => "photons",
+                "passes" => "passes",
+                "photon area" => "photon area, m²",
+                "patches" => "patches, in those of the coarsest",
+                _ => "step",
             },
             "relative squared error",
         ],

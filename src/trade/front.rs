@@ -108,7 +108,7 @@ pub fn fits(ladder: &Ladder) -> [Option<Fit>; 2] {
         ladder.rungs.iter().map(point).collect()
     };
     let over_time = points(&|rung| (rung.seconds(1, 1.0), rung.resolved_error()));
-    let over_work = points(&|rung| (rung.work(), rung.error_of_all));
+    let over_work = points(&|rung| (rung.knob, rung.error_of_all));
     [over_time, over_work].map(|points| fit::fit(&points, ladder.floor()))
 }
 

@@ -261,7 +261,7 @@ fn even_mesh() -> Family {
     });
     Family {
         name: "radiosity, even mesh",
-        knob: "patches over coarsest",
+        knob: "patches",
         renderer: Renderer::Radiosity,
         floor: Floor::Some,
         theory: Some(2.0),

@@ -156,12 +156,6 @@ impl Measured {
     pub fn resolved_error(&self) -> f64 {
         self.error.max(self.error_deviation).max(f64::MIN_POSITIVE)
     }
-
-    /// What is turned up, in numbers that theory speaks of: patches where the number of them is the knob.
-    #[must_use]
-    pub fn work(&self) -> f64 {
-        self.patches.map_or(self.knob, |patches| patches as f64)
-    }
 }
 
 /// The table of all settings.

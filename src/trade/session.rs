@@ -202,7 +202,11 @@ impl Session<'_> {
         let key = self.key(family, rung);
         if let Some(known) = self.known(&key) {
             climb.cost((known.solve + known.view) * f64::from(self.plan.seeds));
-            self.findings.families[nth].rungs.push(known);
+            // Two families may share a setting, each with a knob of its own.
+            let knob = rung.knob;
+            self.findings.families[nth]
+                .rungs
+                .push(Measured { knob, ..known });
             return Ok(());
         }
         let left = self.left();
