@@ -100,6 +100,18 @@ impl UnitShape {
         matches!(self, Self::Disk)
     }
 
+    /// Whether it bounds a body on all sides.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        match self {
+            Self::Sphere | Self::Cube => true,
+            Self::Disk => false,
+            Self::Frustum(UnitFrustum {
+                base, top, caps, ..
+            }) => (caps[0] || *base <= 0.0) && (caps[1] || *top <= 0.0),
+        }
+    }
+
     /// The point of `face` that is meant by `near`, a point computed with rounding errors.
     ///
     /// It keeps at least `margin` (in units of this frame, far below 1) away from the edges of the face: where two faces

@@ -84,6 +84,23 @@ impl Scene {
         })
     }
 
+    /// How many stored shapes are closed bodies of a material that `wanted` picks, and how many shapes are stored.
+    #[must_use]
+    pub fn closed_bodies(&self, wanted: impl Fn(&Material) -> bool) -> (usize, usize) {
+        let wanted: Vec<bool> = self.materials.iter().map(wanted).collect();
+        let (mut n_closed, mut n_all) = (0, 0);
+        for group in self.groups.iter() {
+            let is_closed = |shape: &&ShapeRecord| {
+                let item = group.places.get(shape.first as usize).copied().flatten();
+                wanted[shape.material.0 as usize]
+                    && matches!(item.map(Item::kind), Some(ItemKind::Solid(at)) if group.solids[at].form.is_closed())
+            };
+            n_closed += group.shapes.iter().filter(is_closed).count();
+            n_all += group.shapes.len();
+        }
+        (n_closed, n_all)
+    }
+
     /// Where the surfaces are whose material `wanted` picks: one box for each shape, or for each instance where the shapes would
     /// be more than about `limit`.
     #[must_use]

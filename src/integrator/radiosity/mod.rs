@@ -18,6 +18,7 @@
 //! view      from the camera              rays        form factors by rays
 //! polygon   between polygons, on paper   hemicube    drawn onto half a cube
 //! kept      as bytes                      solution    what is kept
+//! insides   where no light is
 //! painted   as a mesh with colours        analytic    on paper where that holds
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
@@ -25,6 +26,7 @@
 mod analytic;
 mod gather;
 mod hemicube;
+pub(in crate::integrator) mod insides;
 mod kept;
 mod mesh;
 mod painted;
@@ -211,6 +213,8 @@ struct Light<'a, 's> {
     carrier: &'a Carrier<'s>,
     sources: &'a Sources<'s>,
     requirements: &'a Requirements,
+    /// By face, whether its back is the inside of a body that no light is in.
+    dark: &'a [bool],
 }
 
 /// Patches with their light.
@@ -250,7 +254,13 @@ impl Radiosity {
         };
         let sources = Sources::required(scene, &requirements);
         let mut mesh = self.mesh(scene)?;
+        let dark = if requirements.has(Feature::Insides) {
+            vec![false; mesh.charts.len()]
+        } else {
+            insides::sealed(scene, &mesh)
+        };
         let light = Light {
+            dark: &dark,
             carrier: &carrier,
             sources: &sources,
             requirements: &requirements,
@@ -315,7 +325,9 @@ impl Radiosity {
                 })
             }
             Solver::Stochastic => {
-                let n_sides = sides_needed(&patches);
+                // As many as if insides were lit: the answer is the same without them.
+                let sides = patches.iter().flat_map(|patch| &patch.sides);
+                let n_sides = sides.filter(|side| side.scatters()).count() as u64;
                 let rays = self.rays(mesh, carrier, context.seed);
                 let n_rays = n_sides * u64::from(rays.n);
                 stochastic::solve(&patches, &rays, n_rays, TOLERANCE, |left| {
@@ -345,6 +357,7 @@ impl Radiosity {
             sources: light.sources,
             seed: context.seed,
             bounces: light.requirements.has(Feature::Bounces),
+            dark: light.dark,
             n_stray: if light.requirements.has(Feature::UnaskedLight) {
                 self.rays_per_row()
             } else {

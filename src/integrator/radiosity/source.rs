@@ -42,6 +42,8 @@ pub(super) struct Lighting<'a, 's> {
     pub(super) seed: u64,
     /// Whether surfaces send light to each other at all.
     pub(super) bounces: bool,
+    /// By face, whether its back is the inside of a body that no light is in.
+    pub(super) dark: &'a [bool],
     /// Rays by which light is looked for that sources are not asked for; 0 where there is none.
     pub(super) n_stray: u32,
     /// Once it is set, nothing more is asked.
@@ -62,6 +64,7 @@ impl Lighting<'_, '_> {
                 let mut own = PatchSide {
                     reflectance: optics[side].reflectance,
                     transmittance: optics[side].transmittance,
+                    is_dark: side == 1 && self.dark[at.cell.chart as usize],
                     ..PatchSide::default()
                 };
                 if own.is_needed() && !self.cancel.is_cancelled() {

@@ -18,11 +18,18 @@ pub(super) struct PatchSide {
     pub(super) source: Rgb,
     /// The part of it that views do not ask for at the point they see, W/m².
     pub(super) stray: Rgb,
+    /// Whether it is known that no light ever falls on it.
+    pub(super) is_dark: bool,
 }
 
 impl PatchSide {
-    /// Whether it does anything with light that falls on it.
+    /// Whether it does anything with light that falls on it, and any may.
     pub(super) fn is_needed(&self) -> bool {
+        self.scatters() && !self.is_dark
+    }
+
+    /// Whether it does anything with light.
+    pub(super) fn scatters(&self) -> bool {
         !(self.reflectance.is_black() && self.transmittance.is_black())
     }
 }

@@ -24,6 +24,8 @@ pub enum Feature {
     ClearShadows,
     /// Light that reaches surfaces on ways on which no source is asked for it.
     UnaskedLight,
+    /// The inner sides of closed bodies.
+    Insides,
 }
 
 /// What is promised of a picture when a feature is kept that its scene does not require.
@@ -39,7 +41,7 @@ pub enum Promise {
 
 impl Feature {
     /// All of them, in the order in which they are explained.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Bounces,
         Self::Caustics,
         Self::UnaimedPhotons,
@@ -49,6 +51,7 @@ impl Feature {
         Self::Bodies,
         Self::ClearShadows,
         Self::UnaskedLight,
+        Self::Insides,
     ];
 
     /// Its name, as it is written.
@@ -64,6 +67,7 @@ impl Feature {
             Self::Bodies => "bodies",
             Self::ClearShadows => "clear-shadows",
             Self::UnaskedLight => "unasked-light",
+            Self::Insides => "insides",
         }
     }
 
@@ -80,6 +84,7 @@ impl Feature {
             Self::Bodies => "remembering the bodies that a ray is in",
             Self::ClearShadows => "looking at each surface on a shadow ray in order",
             Self::UnaskedLight => "rays from patches that look for such light",
+            Self::Insides => "light and form factors of inner sides",
         }
     }
 
@@ -93,7 +98,7 @@ impl Feature {
             Self::Guide | Self::LightHits => &["path"],
             Self::LightChoice => &["path", "photon"],
             Self::ClearShadows => &["raytracer"],
-            Self::UnaskedLight => &["radiosity"],
+            Self::UnaskedLight | Self::Insides => &["radiosity"],
             Self::Bodies => &["path", "raytracer", "photon", "radiosity", "light"],
         }
     }
@@ -107,7 +112,8 @@ impl Feature {
             | Self::LightChoice
             | Self::LightHits
             | Self::Bodies
-            | Self::UnaskedLight => Promise::SameBits,
+            | Self::UnaskedLight
+            | Self::Insides => Promise::SameBits,
             // Panes and alpha along a shadow ray are multiplied in another order.
             Self::ClearShadows => Promise::SameRounded,
             Self::UnaimedPhotons | Self::Guide => Promise::SameMean,

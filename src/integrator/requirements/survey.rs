@@ -1,6 +1,7 @@
 //! Under which conditions features are required.
 
 use super::feature::Feature;
+use crate::integrator::radiosity::insides::seals;
 use crate::light::Sky;
 use crate::material::{Lobe, LobeKind, Material};
 use crate::scene::Scene;
@@ -82,6 +83,7 @@ impl<'s> Survey<'s> {
                 self.any_material("smooth glass", "smooth glass", is_clear_body)
             }
             Feature::UnaskedLight => self.unasked_light(),
+            Feature::Insides => self.insides(),
         }
     }
 
@@ -169,6 +171,17 @@ impl<'s> Survey<'s> {
             return (false, format!("no ray can meet light: {lamps}"));
         }
         (true, format!("rays can meet {}", there.join(", ")))
+    }
+
+    fn insides(&self) -> (bool, String) {
+        let (n, all) = self.scene.closed_bodies(seals);
+        match n {
+            0 => (true, format!("no shape closes an opaque body (0 of {all})")),
+            n => (
+                false,
+                format!("shapes close dark bodies, but for lights in them ({n} of {all})"),
+            ),
+        }
     }
 
     fn unasked_light(&self) -> (bool, String) {

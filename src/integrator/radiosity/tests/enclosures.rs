@@ -209,6 +209,7 @@ fn furnaces_are_as_in_the_table() {
         sources: &sources,
         seed: 1,
         bounces: true,
+        dark: &vec![false; laid.mesh.charts.len()],
         n_stray: 0,
         cancel: &cancel,
     };
@@ -432,6 +433,7 @@ fn endless_ground_does_not_hide_what_stands_on_it() {
         sources: &sources,
         seed: 1,
         bounces: true,
+        dark: &vec![false; laid.mesh.charts.len()],
         n_stray: 0,
         cancel: &cancel,
     };
