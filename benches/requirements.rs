@@ -118,7 +118,10 @@ fn main() {
     for (feature, what, name, samples) in CASES {
         let (_, scene) = scenes.iter().find(|(known, _)| *known == what).unwrap();
         let found = Requirements::of(scene, Features::NONE);
-        let found = found.findings().iter().find(|found| found.feature == feature);
+        let found = found
+            .findings()
+            .iter()
+            .find(|found| found.feature == feature);
         let found = found.unwrap();
         assert_eq!(found.state, State::LeftOut, "{} in {what}", feature.name());
         // Photons that are aimed compare by the work for each that arrives; the map of all light is left out.

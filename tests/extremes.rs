@@ -85,6 +85,7 @@ fn world(scale: f64, offset: DVec3) -> Scene {
             gray(30.0 * scale * scale),
         )],
         environment: sky(0.5),
+        ..SceneDescription::default()
     })
     .unwrap()
 }

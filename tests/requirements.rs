@@ -11,19 +11,26 @@ mod room;
 #[path = "support/spared.rs"]
 mod spared;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
+use room::{at, even_sky, gray, square};
 use spared::scenes;
 use understory::color::Rgb;
+use understory::geometry::Shape;
 use understory::integrator::radiosity::Solver;
 use understory::integrator::requirements::{Feature, Features, Promise, Requirements, State};
 use understory::integrator::{
     CancelToken, Method, Path, PhotonMapping, RadianceEstimator, Radiosity, RayCounts, Raytracer,
     RenderContext,
 };
+use understory::material::Material;
 use understory::math::stats::{RunningStats, combined_error};
 use understory::math::{Ray, rng};
 use understory::sampler::{Sampler, SamplerKind};
 use understory::scene::Scene;
+use understory::scene::description::{
+    Extras, Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
+};
+use understory::validation::room::Room;
 
 /// Rays of a picture along each side.
 const SIDE: u32 = 6;
@@ -104,6 +111,9 @@ fn picture(scene: &Scene, method: &Method, seed: u64, samples: u32) -> Vec<Rgb> 
     Prepared::new(scene, method, seed).picture(seed, samples)
 }
 
+/// Features that scenes are built with, not renderers made with.
+const OF_SCENES: [Feature; 2] = [Feature::Coordinates, Feature::Groups];
+
 /// Whether a scene does not require a feature.
 fn spares(scene: &Scene, feature: Feature) -> bool {
     !Requirements::of(scene, Features::NONE).has(feature)
@@ -115,7 +125,8 @@ fn cases(
     promise: Promise,
 ) -> Vec<(Feature, &'static str, usize)> {
     let mut cases = Vec::new();
-    for feature in Feature::ALL.into_iter().filter(|f| f.promise() == promise) {
+    let of_renderers = Feature::ALL.into_iter().filter(|f| !OF_SCENES.contains(f));
+    for feature in of_renderers.filter(|f| f.promise() == promise) {
         for renderer in RENDERERS
             .into_iter()
             .filter(|r| feature.users().contains(r))
@@ -225,7 +236,7 @@ fn c60_what_is_not_required_changes_no_mean() {
 #[test]
 fn every_feature_is_spared_and_required_somewhere() {
     let scenes = scenes();
-    for feature in Feature::ALL {
+    for feature in Feature::ALL.into_iter().filter(|f| !OF_SCENES.contains(f)) {
         let n = scenes
             .iter()
             .filter(|(_, scene)| spares(scene, feature))
@@ -262,4 +273,88 @@ fn kept_features_are_there_and_told() {
         line.contains("  kept      no material is a mirror or glass (0 of 8)"),
         "{line}"
     );
+}
+
+/// A ball over a floor under a sky.
+fn ball_over_floor(ball: Material) -> Room {
+    Room::default()
+        .with(square(2.0), at(0.0, 0.0, 0.0), Material::lambert(gray(0.5)))
+        .with(Shape::Sphere { radius: 0.5 }, at(0.0, 0.0, 0.8), ball)
+        .under(even_sky(1.0))
+}
+
+#[test]
+fn c60_texture_coordinates_without_pictures_change_no_bit() {
+    let ball = || ball_over_floor(Material::lambert(gray(0.4)));
+    let without = ball().scene().unwrap();
+    assert!(spares(&without, Feature::Coordinates));
+    let with = ball().with_extras(Extras {
+        coordinates: true,
+        ..Extras::default()
+    });
+    let with = with.scene().unwrap();
+    let toward = |scene: &Scene| {
+        let ray = Ray::new(DVec3::new(0.1, -4.0, 0.9), DVec3::Y);
+        scene.surface(&ray, &scene.closest(&ray).unwrap()).uv
+    };
+    // They are there, and are not looked at.
+    assert!(toward(&with) != toward(&without));
+    for name in ["path", "raytracer", "photon"] {
+        let method = renderer(name, Features::NONE);
+        assert!(
+            picture(&with, &method, 1, 1) == picture(&without, &method, 1, 1),
+            "{name}"
+        );
+    }
+}
+
+/// Groups used once, and one that is used often.
+fn grouped(groups: bool) -> Scene {
+    let ball = |x: f64, z: f64| PlacedShape {
+        shape: Shape::Sphere { radius: 0.2 },
+        to_group: at(x, 0.0, z),
+        material: MaterialId(0),
+        organ: OrganId(0),
+    };
+    let place = |group: u32, x: f64| Instance {
+        group: GroupId(group),
+        to_group: at(x, 0.3, 0.0) * DAffine3::from_rotation_z(x),
+        organ: OrganId::COPY,
+    };
+    let row = |n: u32, z: f64| Group {
+        shapes: (0..n).map(|k| ball(f64::from(k) * 0.1 - 0.8, z)).collect(),
+        instances: vec![],
+    };
+    let root = Group {
+        shapes: vec![],
+        instances: vec![place(0, 0.1), place(1, 0.0), place(2, -0.2), place(2, 0.3)],
+    };
+    let description = SceneDescription {
+        materials: vec![Material::lambert(gray(0.5))],
+        groups: vec![row(20, 0.4), row(3, 0.9), row(20, 1.4), root],
+        root: Some(GroupId(3)),
+        environment: even_sky(1.0),
+        extras: Extras {
+            groups,
+            ..Extras::default()
+        },
+        ..SceneDescription::default()
+    };
+    Scene::build(description).unwrap()
+}
+
+/// What is stored in the frame of a group is the same surface but for rounding.
+#[test]
+fn c60_groups_that_dissolve_change_no_picture() {
+    let (flat, kept) = (grouped(false), grouped(true));
+    assert_eq!((flat.stats().instances, kept.stats().instances), (2, 4));
+    assert_eq!((flat.left_out().groups, kept.left_out().groups), (2, 0));
+    assert!(spares(&flat, Feature::Groups) && !spares(&kept, Feature::Groups));
+    for name in ["path", "raytracer"] {
+        let method = renderer(name, Features::NONE);
+        let pictures = [&flat, &kept].map(|scene| picture(scene, &method, 1, 8));
+        let sum = |picture: &[Rgb]| picture.iter().map(|c| c.g).sum::<f64>();
+        let off = (sum(&pictures[0]) / sum(&pictures[1]) - 1.0).abs();
+        assert!(off < 1e-3, "{name}: {off}");
+    }
 }

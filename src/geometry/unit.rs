@@ -118,8 +118,14 @@ impl UnitShape {
     /// meet, a point that is off by a rounding could lie on the wrong side of the other face.
     #[must_use]
     pub fn point(&self, face: Face, near: DVec3, margin: f64) -> UnitPoint {
+        self.point_with(face, near, margin, true)
+    }
+
+    /// The same, with texture coordinates of what is round only if they are wanted: they are dear. They are 0 otherwise.
+    #[must_use]
+    pub fn point_with(&self, face: Face, near: DVec3, margin: f64, has_uv: bool) -> UnitPoint {
         match (self, face) {
-            (Self::Sphere, _) => sphere_point(near),
+            (Self::Sphere, _) => sphere_point(near, has_uv),
             (Self::Disk, _) => disk_point(near, 0.0, 1.0, DVec3::Z),
             (Self::Frustum(frustum), Face::Base) => {
                 let inside = near
@@ -133,7 +139,7 @@ impl UnitShape {
                     .clamp_length_max(frustum.top * (1.0 - margin));
                 disk_point(inside.extend(1.0), 1.0, frustum.top, DVec3::Z)
             }
-            (Self::Frustum(frustum), _) => frustum.side_point(near, margin),
+            (Self::Frustum(frustum), _) => frustum.side_point(near, margin, has_uv),
             (Self::Cube, face) => cube_point(face, near, margin),
         }
     }
@@ -224,14 +230,18 @@ impl UnitFrustum {
         })
     }
 
-    fn side_point(&self, near: DVec3, margin: f64) -> UnitPoint {
+    fn side_point(&self, near: DVec3, margin: f64, has_uv: bool) -> UnitPoint {
         let z = near.z.clamp(margin, 1.0 - margin);
         let slope = self.top - self.base;
         let around = near.truncate().try_normalize().unwrap_or(DVec2::X);
         UnitPoint {
             position: (around * self.radius(z)).extend(z),
             normal: around.extend(-slope).normalize(),
-            uv: DVec2::new(turns(around), z),
+            uv: if has_uv {
+                DVec2::new(turns(around), z)
+            } else {
+                DVec2::ZERO
+            },
         }
     }
 }
@@ -291,9 +301,13 @@ fn turns(direction: DVec2) -> f64 {
     if turns < 0.0 { turns + 1.0 } else { turns }
 }
 
-fn sphere_point(near: DVec3) -> UnitPoint {
+fn sphere_point(near: DVec3, has_uv: bool) -> UnitPoint {
     let n = near.try_normalize().unwrap_or(DVec3::Z);
-    let uv = DVec2::new(turns(n.truncate()), acos(-n.z) / PI);
+    let uv = if has_uv {
+        DVec2::new(turns(n.truncate()), acos(-n.z) / PI)
+    } else {
+        DVec2::ZERO
+    };
     UnitPoint {
         position: n,
         normal: n,

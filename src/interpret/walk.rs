@@ -135,6 +135,7 @@ impl<'s, S: Source> Painter<'s, S> {
                 root: Some(root),
                 lights,
                 environment,
+                ..SceneDescription::default()
             },
             organs: self.organs,
             summary,

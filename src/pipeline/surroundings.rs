@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use crate::color::Rgb;
 use crate::geometry::Shape;
+use crate::integrator::requirements::Feature;
 use crate::interpret::Summary;
 use crate::light::{Dome, Environment, Sky, SkyImage};
 use crate::material::Material;
@@ -12,7 +13,7 @@ use crate::options::Options;
 use crate::options::surroundings::{SkyKind, SunIrradiance};
 use crate::options::value::{Brightness, Daylight, Ground};
 use crate::scene::description::{
-    Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
+    Extras, Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
 use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
@@ -108,6 +109,11 @@ impl Outdoors {
         if let Some(environment) = self.environment {
             description.environment = environment;
         }
+        let kept = options.require.value;
+        description.extras = Extras {
+            groups: kept.contains(Feature::Groups),
+            coordinates: kept.contains(Feature::Coordinates),
+        };
         if wants_ground {
             add_ground(description, reflectance(options), &model.bounds);
         }

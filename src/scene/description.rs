@@ -65,6 +65,15 @@ pub struct Group {
     pub instances: Vec<Instance>,
 }
 
+/// What a world has though light does not require it: for comparing with a world that has not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Groups that an instance of saves nothing, as far as nesting allows.
+    pub groups: bool,
+    /// Texture coordinates of round shapes though there are no pictures.
+    pub coordinates: bool,
+}
+
 /// All that light needs to know of a model.
 #[derive(Clone, Debug, Default)]
 pub struct SceneDescription {
@@ -78,6 +87,8 @@ pub struct SceneDescription {
     pub lights: Vec<Light>,
     /// Light from infinitely far away: sky and sun.
     pub environment: Environment,
+    /// What it has besides.
+    pub extras: Extras,
 }
 
 impl SceneDescription {
@@ -104,6 +115,7 @@ impl SceneDescription {
             root: self.root,
             lights: self.lights.clone(),
             environment: self.environment.clone(),
+            extras: self.extras,
         })
     }
 

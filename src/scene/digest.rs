@@ -47,6 +47,7 @@ impl SceneDescription {
     pub fn shape_digest_unless(&self, stop: Stop<'_>) -> u64 {
         let mut digest = Digest(0);
         digest.add(self.root.map_or(u64::MAX, |root| u64::from(root.0)));
+        digest.add(u64::from(self.extras.groups));
         let opaque = self.materials.iter().map(Material::is_opaque);
         opaque.for_each(|is_opaque| digest.add(u64::from(is_opaque)));
         for group in &self.groups {

@@ -108,6 +108,16 @@ pub struct Scene {
     /// Sorted by primitive.
     emitters: Vec<Emitter>,
     bounds: Bounds3,
+    /// Whether the texture coordinates of round shapes are wanted.
+    has_coordinates: bool,
+    left_out: LeftOut,
+}
+
+/// What a scene was spared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    /// Groups that were dissolved into those that use them.
+    pub groups: usize,
 }
 
 /// How large a scene is.
@@ -163,6 +173,9 @@ impl Scene {
         let known = Known::of(before, &plan);
         let groups = bake_all(&plan, &description.materials, &known, stop)?;
         let planes = planes::world_planes(&plan.groups)?;
+        let left_out = LeftOut {
+            groups: plan.n_dissolved,
+        };
         drop(plan);
 
         let (to_root, bounds) = match groups.last() {
@@ -173,6 +186,8 @@ impl Scene {
             None => (DAffine3::IDENTITY, Bounds3::EMPTY),
         };
         let scene = Self {
+            has_coordinates: wants_coordinates(&description),
+            left_out,
             materials: description.materials,
             lights: description.lights,
             environment: description.environment,
@@ -196,6 +211,7 @@ impl Scene {
     pub fn relit(&self, description: SceneDescription) -> Result<Self, SceneError> {
         check_light(&description)?;
         let scene = Self {
+            has_coordinates: wants_coordinates(&description),
             materials: description.materials,
             lights: description.lights,
             environment: description.environment,
@@ -219,6 +235,12 @@ impl Scene {
     pub fn prototypes(&self) -> (usize, usize) {
         let n_all = self.prototypes.iter().flatten().count();
         (n_all - self.n_kept, self.n_kept)
+    }
+
+    /// What it was spared when it was built.
+    #[must_use]
+    pub fn left_out(&self) -> LeftOut {
+        self.left_out
     }
 
     /// The materials, by [`MaterialId`].
@@ -299,6 +321,12 @@ impl Scene {
         self.optics(&point)
             .passage(point.normal_g.dot(ray.direction))
     }
+}
+
+/// Whether anything in a world looks at texture coordinates of round shapes.
+fn wants_coordinates(description: &SceneDescription) -> bool {
+    let mut materials = description.materials.iter();
+    description.extras.coordinates || materials.any(|material| material.pictures.is_some())
 }
 
 /// Refuses materials and lights that cannot be.

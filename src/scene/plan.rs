@@ -23,6 +23,8 @@ pub(super) const MAX_DEPTH: usize = 16;
 /// The groups that stay, each after all the groups it refers to; the root is the last.
 pub(super) struct Plan<'a> {
     pub(super) groups: Vec<PlannedGroup<'a>>,
+    /// How many do not.
+    pub(super) n_dissolved: usize,
 }
 
 /// A group that stays, with the contents of all that dissolved into it.
@@ -59,18 +61,30 @@ pub(super) fn plan<'a>(
     stop: Stop<'_>,
 ) -> Result<Plan<'a>, SceneError> {
     let Some(root) = description.root else {
-        return Ok(Plan { groups: Vec::new() });
+        return Ok(Plan {
+            groups: Vec::new(),
+            n_dissolved: 0,
+        });
     };
     if root.0 as usize >= description.groups.len() {
         return Err(SceneError::NoRoot(root.0));
     }
     let order = children_first(&description.groups, root)?;
     // Shallow nesting is worth memory only where there is no other way.
-    for dissolving in [Dissolving::Leaves, Dissolving::Small] {
+    let first = if description.extras.groups {
+        Dissolving::Empty
+    } else {
+        Dissolving::Leaves
+    };
+    for dissolving in [first, Dissolving::Leaves, Dissolving::Small] {
         let dissolves = which_dissolve(&description.groups, root, &order, dissolving);
         let groups = gather_all(&description.groups, &order, (&dissolves, stop))?;
         if groups.iter().all(|group| group.height <= MAX_DEPTH) {
-            return Ok(Plan { groups });
+            let n_dissolved = dissolves.iter().filter(|dissolves| **dissolves).count();
+            return Ok(Plan {
+                groups,
+                n_dissolved,
+            });
         }
     }
     Err(SceneError::TooDeep { limit: MAX_DEPTH })
@@ -79,6 +93,8 @@ pub(super) fn plan<'a>(
 /// Which groups dissolve because they are small.
 #[derive(Clone, Copy, PartialEq)]
 enum Dissolving {
+    /// Those with nothing in them, and no others however often they are used.
+    Empty,
     /// Those without instances of their own.
     Leaves,
     /// All.
@@ -179,10 +195,12 @@ fn which_dissolve(
         }
         sizes[group] = (own, remaining);
         let is_small = match dissolving {
+            Dissolving::Empty => own.saturating_add(remaining) == 0,
             Dissolving::Leaves => remaining == 0 && own <= SMALL,
             Dissolving::Small => own.saturating_add(remaining) <= SMALL,
         };
-        dissolves[group] = group != root.0 as usize && (uses[group] == 1 || is_small);
+        dissolves[group] = group != root.0 as usize
+            && (is_small || uses[group] == 1 && dissolving != Dissolving::Empty);
     }
     dissolves
 }

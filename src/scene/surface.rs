@@ -21,7 +21,7 @@ pub struct SurfacePoint {
     /// Shading normal: unit, interpolated if the mesh has normals per corner, otherwise the geometric one.
     pub normal_s: DVec3,
     /// Texture coordinates: of the mesh; turns round the axis and height for round shapes; 0..=1 across flat ones; metres
-    /// for planes.
+    /// for planes. Of balls and the sides of frusta only in a scene with pictures, 0 otherwise.
     pub uv: DVec2,
     /// The material.
     pub material: MaterialId,
@@ -188,7 +188,9 @@ impl Scene {
         let mut local = match group.places[located.number as usize].map(Item::kind) {
             Some(ItemKind::Triangle(index)) => triangle_point(group, shape, index, hit, near),
             Some(ItemKind::Quad(index)) => quad_point(group, shape, index, hit, near),
-            Some(ItemKind::Solid(index)) => solid_point(group, index, hit, &near()),
+            Some(ItemKind::Solid(index)) => {
+                solid_point(group, index, hit, &near(), self.has_coordinates)
+            }
             Some(ItemKind::Instance(_) | ItemKind::TwoInstances(_) | ItemKind::Block(_)) | None => {
                 unreachable!("invariant: only stored primitives are hit")
             }
@@ -384,12 +386,18 @@ fn quad_point(
     }
 }
 
-fn solid_point(group: &Group, index: usize, hit: &Hit, near: &CarriedIn) -> LocalPoint {
+fn solid_point(
+    group: &Group,
+    index: usize,
+    hit: &Hit,
+    near: &CarriedIn,
+    has_uv: bool,
+) -> LocalPoint {
     let solid = &group.solids[index];
     let blur = absolute(&solid.to_unit.matrix3) * near.blur;
     let margin = (blur.max_element() + EDGE_MARGIN).min(EDGE_MARGIN_LIMIT);
     let near = solid.to_unit.transform_point3(near.position);
-    let point = solid.form.point(hit.face, near, margin);
+    let point = solid.form.point_with(hit.face, near, margin, has_uv);
     let local = LocalPoint {
         position: point.position,
         // Coordinates are at most 1, and so are the errors of the equations that define the surface.

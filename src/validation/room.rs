@@ -5,7 +5,7 @@ use crate::geometry::Shape;
 use crate::light::{Environment, Light, Sky};
 use crate::material::Material;
 use crate::scene::description::{
-    Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
+    Extras, Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
 use crate::scene::{Scene, SceneError};
 use glam::{DAffine3, DVec3};
@@ -44,6 +44,13 @@ impl Room {
     #[must_use]
     pub fn under(mut self, environment: Environment) -> Self {
         self.description.environment = environment;
+        self
+    }
+
+    /// With what light does not require.
+    #[must_use]
+    pub fn with_extras(mut self, extras: Extras) -> Self {
+        self.description.extras = extras;
         self
     }
 

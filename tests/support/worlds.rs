@@ -7,7 +7,7 @@ use std::sync::Arc;
 use understory::geometry::{Shape, TriangleMesh};
 use understory::material::Material;
 use understory::scene::description::{
-    Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
+    Extras, Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
 use understory::scene::{Scene, SceneError};
 
@@ -174,6 +174,10 @@ pub(crate) fn describe(groups: Vec<Group>) -> SceneDescription {
         materials: vec![Material::default()],
         root: groups.len().checked_sub(1).map(|root| GroupId(root as u32)),
         groups,
+        extras: Extras {
+            coordinates: true,
+            ..Extras::default()
+        },
         ..SceneDescription::default()
     }
 }

@@ -26,6 +26,10 @@ pub enum Feature {
     UnaskedLight,
     /// The inner sides of closed bodies.
     Insides,
+    /// Texture coordinates.
+    Coordinates,
+    /// Groups of shapes that an instance of saves nothing.
+    Groups,
 }
 
 /// What is promised of a picture when a feature is kept that its scene does not require.
@@ -41,7 +45,7 @@ pub enum Promise {
 
 impl Feature {
     /// All of them, in the order in which they are explained.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Bounces,
         Self::Caustics,
         Self::UnaimedPhotons,
@@ -52,6 +56,8 @@ impl Feature {
         Self::ClearShadows,
         Self::UnaskedLight,
         Self::Insides,
+        Self::Coordinates,
+        Self::Groups,
     ];
 
     /// Its name, as it is written.
@@ -68,6 +74,8 @@ impl Feature {
             Self::ClearShadows => "clear-shadows",
             Self::UnaskedLight => "unasked-light",
             Self::Insides => "insides",
+            Self::Coordinates => "coordinates",
+            Self::Groups => "groups",
         }
     }
 
@@ -85,6 +93,8 @@ impl Feature {
             Self::ClearShadows => "looking at each surface on a shadow ray in order",
             Self::UnaskedLight => "rays from patches that look for such light",
             Self::Insides => "light and form factors of inner sides",
+            Self::Coordinates => "texture coordinates where rays meet round shapes",
+            Self::Groups => "a change of frame for each group that a ray enters",
         }
     }
 
@@ -99,7 +109,9 @@ impl Feature {
             Self::LightChoice => &["path", "photon"],
             Self::ClearShadows => &["raytracer"],
             Self::UnaskedLight | Self::Insides => &["radiosity"],
-            Self::Bodies => &["path", "raytracer", "photon", "radiosity", "light"],
+            Self::Bodies | Self::Coordinates | Self::Groups => {
+                &["path", "raytracer", "photon", "radiosity", "light"]
+            }
         }
     }
 
@@ -113,10 +125,11 @@ impl Feature {
             | Self::LightHits
             | Self::Bodies
             | Self::UnaskedLight
-            | Self::Insides => Promise::SameBits,
+            | Self::Insides
+            | Self::Coordinates => Promise::SameBits,
             // Panes and alpha along a shadow ray are multiplied in another order.
             Self::ClearShadows => Promise::SameRounded,
-            Self::UnaimedPhotons | Self::Guide => Promise::SameMean,
+            Self::UnaimedPhotons | Self::Guide | Self::Groups => Promise::SameMean,
         }
     }
 }

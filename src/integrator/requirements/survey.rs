@@ -84,6 +84,19 @@ impl<'s> Survey<'s> {
             }
             Feature::UnaskedLight => self.unasked_light(),
             Feature::Insides => self.insides(),
+            Feature::Coordinates => {
+                self.any_material("painted with a picture", "painted with pictures", |m| {
+                    m.pictures.is_some()
+                })
+            }
+            Feature::Groups => {
+                let (n, stats) = (self.scene.left_out().groups, self.scene.stats());
+                let instances = counted(stats.instances, "instance", "instances");
+                (
+                    n == 0,
+                    format!("{n} groups used once or small; {instances} of others"),
+                )
+            }
         }
     }
 
