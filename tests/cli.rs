@@ -403,6 +403,41 @@ fn a_flight_goes_on_where_it_was_and_never_over_a_stranger() {
 }
 
 #[test]
+fn what_a_scene_requires_is_told_kept_and_reported() {
+    let bench = Bench::new(TREE);
+    let told = |flags: &str| {
+        let text = bench.succeed(&format!("render m.rgg --explain-scene {flags}"));
+        let line = text.lines().find(|line| line.starts_with("caustics "));
+        line.unwrap().to_owned()
+    };
+    assert!(told("--seed 1").contains("left out  no material is a mirror or glass"));
+    assert!(told("--require caustics,guide").contains("kept  "));
+    bench.fail("render m.rgg --explain-scene --require shadows", 2);
+    let quick = "render m.rgg --size 16x12 --samples 1 --renderer photon --global-photons 500 --caustic-photons 500";
+    bench.succeed(&format!("{quick} -o a.png --report a.json"));
+    bench.succeed(&format!(
+        "{quick} -o b.png --report b.json --require caustics"
+    ));
+    let report = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&bytes(&bench.path(name))).unwrap()
+    };
+    let (a, b) = (report("a.json"), report("b.json"));
+    // The files tell their options, so they differ; what is seen does not.
+    let pixels = |name: &str| image::open(bench.path(name)).unwrap().to_rgb8();
+    assert!(pixels("a.png") == pixels("b.png"));
+    let state = |report: &serde_json::Value| {
+        let all = report["requirements"].as_array().unwrap();
+        let found = all.iter().find(|fact| fact["feature"] == "caustics");
+        found.unwrap()["state"].clone()
+    };
+    assert_eq!((state(&a), state(&b)), ("left out".into(), "kept".into()));
+    assert_eq!(
+        (&a["photons_emitted"], &b["photons_emitted"]),
+        (&500.into(), &1000.into())
+    );
+}
+
+#[test]
 fn the_file_beside_the_model_counts_and_its_mistakes_are_shown() {
     let bench = Bench::new(TREE);
     bench.write(

@@ -92,10 +92,15 @@ impl<'s> Survey<'s> {
             Feature::Groups => {
                 let (n, stats) = (self.scene.left_out().groups, self.scene.stats());
                 let instances = counted(stats.instances, "instance", "instances");
-                (
-                    n == 0,
-                    format!("{n} groups used once or small; {instances} of others"),
-                )
+                let dissolved = match n {
+                    0 => "no group is used once or small".to_owned(),
+                    n => counted(
+                        n,
+                        "group is used once or small",
+                        "groups are used once or small",
+                    ),
+                };
+                (n == 0, format!("{dissolved}; {instances}"))
             }
         }
     }
@@ -192,7 +197,7 @@ impl<'s> Survey<'s> {
             0 => (true, format!("no shape closes an opaque body (0 of {all})")),
             n => (
                 false,
-                format!("shapes close dark bodies, but for lights in them ({n} of {all})"),
+                format!("no light gets into closed bodies ({n} of {all} shapes)"),
             ),
         }
     }
