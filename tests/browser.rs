@@ -9,13 +9,14 @@
 #[path = "support/browser.rs"]
 #[allow(dead_code, reason = "each test that uses a browser uses a part of it")]
 mod browser;
+#[path = "support/watching.rs"]
+mod watching;
 
 use browser::{Browser, Shot};
 use std::fs;
-use std::io::{BufRead, BufReader};
-use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
+use watching::Watch;
 
 /// Two balls side by side, and one more above with each step.
 const MODEL: &str = "const float SIZE = 0.6; // of the balls below\nmodule Bud;\n\
@@ -29,35 +30,6 @@ const CAMERA: &str =
 const LEFT: (f64, f64) = (0.385, 0.66);
 const RIGHT: (f64, f64) = (0.615, 0.66);
 const ABOVE: (f64, f64) = (0.5, 0.466);
-
-/// A running `watch`, ended when it is dropped.
-struct Watch(Child);
-
-impl Watch {
-    /// Starts it in a folder; gives the address of its page, too.
-    fn start(folder: &Path) -> (Self, String) {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_understory"))
-            .current_dir(folder)
-            .args(["watch", "m.rgg", "--port", "0", "--size", "150x100"])
-            .args(["--quality", "draft"])
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-        let line = lines.find(|line| line.as_ref().unwrap().contains("http://"));
-        let address = line.unwrap().unwrap();
-        let address = address.split("open ").nth(1).unwrap().trim().to_owned();
-        std::thread::spawn(move || lines.for_each(drop));
-        (Self(child), address)
-    }
-}
-
-impl Drop for Watch {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 /// Whether a channel (0 red, 1 green, 2 blue) outshines the others at a place.
 fn shows(shot: &Shot, channel: usize, (x, y): (f64, f64)) -> bool {
@@ -82,7 +54,7 @@ fn a_session_in_a_real_browser() {
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("m.rgg", MODEL);
     write("m.toml", CAMERA);
-    let (_watch, address) = Watch::start(folder.path());
+    let (_watch, address) = Watch::start(folder.path(), "m.rgg", "--size 150x100 --quality draft");
 
     // The first picture.
     page.open(&address);

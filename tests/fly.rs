@@ -13,11 +13,12 @@ mod opened;
 use assert_cmd::Command;
 use image::AnimationDecoder;
 use image::codecs::{gif::GifDecoder, png::PngDecoder, webp::WebPDecoder};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 /// A small tree that grows.
@@ -299,44 +300,89 @@ fn parts_make_the_same_film_as_one_run() {
     assert!(bench.bytes("parts.mp4") == bench.bytes("whole.mp4"));
 }
 
-/// Kills after which it must still end in the same film.
+/// Frames of the film that is broken off.
+const FRAMES: u32 = 24;
+/// How often it is broken off.
 const KILLS: u32 = 20;
+
+/// The frames of the film that is broken off, with the time of their last change. Each must be one of the whole film.
+fn whole_frames(bench: &Bench) -> BTreeMap<u32, SystemTime> {
+    let mut there = BTreeMap::new();
+    for i in 0..FRAMES {
+        let name = frame("killed.mp4.frames", i);
+        let Ok(data) = fs::metadata(bench.path(&name)) else {
+            continue;
+        };
+        let is_same = bench.bytes(&name) == bench.bytes(&frame("whole.mp4.frames", i));
+        assert!(is_same, "{name} is not that of the whole film");
+        there.insert(i, data.modified().unwrap());
+    }
+    there
+}
+
+/// Runs it until so many frames are there and a pause is over, then ends it: the system does, at once, or a user who is polite.
+fn break_off(bench: &Bench, words: &str, n_frames: usize, pause: Duration, is_polite: bool) {
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
+        .current_dir(bench.folder.path())
+        .args(words.split(' '))
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let count = || {
+        (0..FRAMES)
+            .filter(|i| bench.path(&frame("killed.mp4.frames", *i)).exists())
+            .count()
+    };
+    while count() < n_frames && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    std::thread::sleep(pause);
+    if is_polite && cfg!(unix) {
+        // Fails if the film is made already.
+        let _ = std::process::Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .stderr(Stdio::null())
+            .status();
+    } else {
+        child.kill().unwrap();
+    }
+    child.wait().unwrap();
+}
 
 #[test]
 fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
     let bench = Bench::new();
-    let words = "fly m.rgg --steps 4 --orbit --flight-frames 24 --size 64x48 --samples 4 --threads 1 --flicker 0";
+    let words = format!(
+        "fly m.rgg --steps 4 --orbit --flight-frames {FRAMES} --size 64x48 --samples 8 --threads 1 --flicker 0 -o"
+    );
     let begin = Instant::now();
-    bench.succeed(&format!("{words} -o whole.mp4"));
+    bench.succeed(&format!("{words} whole.mp4"));
     let whole = begin.elapsed();
-    let mut before = 0;
+    let (mut there, mut n_resumed) = (BTreeMap::new(), 0);
     for kill in 0..KILLS {
-        // Anywhere from the loading of the program to what takes a third of the film, from one seed.
+        // None, one or two frames later, at any moment of a frame; without a frame, also while the program loads and grows.
+        let more = kill % 3;
+        let part = if more == 0 { 3 } else { FRAMES };
         let chance = understory::math::rng::hash(&[20, u64::from(kill)]) >> 40;
-        let moment = whole.mul_f64(chance as f64 / f64::from(1_u32 << 24) / 3.0);
-        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_understory"))
-            .current_dir(bench.folder.path())
-            .args(format!("{words} -o killed.mp4").split(' '))
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        std::thread::sleep(moment);
-        child.kill().unwrap();
-        child.wait().unwrap();
-        // What stands under the name of a frame is a whole frame, and none is lost.
-        let mut there = 0;
-        for i in 0..24 {
-            let name = frame("killed.mp4.frames", i);
-            if bench.path(&name).exists() {
-                assert!(
-                    bench.bytes(&name) == bench.bytes(&frame("whole.mp4.frames", i)),
-                    "{name}"
-                );
-                there += 1;
-            }
+        let pause = (whole / part).mul_f64(chance as f64 / f64::from(1_u32 << 24));
+        let n_frames = there.len() + more as usize;
+        break_off(
+            &bench,
+            &format!("{words} killed.mp4"),
+            n_frames,
+            pause,
+            kill % 4 == 3,
+        );
+        let now = whole_frames(&bench);
+        for (i, changed) in &there {
+            assert_eq!(
+                now.get(i),
+                Some(changed),
+                "frame {i} is lost or was made again"
+            );
         }
-        assert!(there >= before, "a frame is lost");
-        before = there;
+        n_resumed += u32::from(!there.is_empty());
+        there = now;
         if bench.path("killed.mp4").exists() {
             assert!(
                 bench.bytes("killed.mp4") == bench.bytes("whole.mp4"),
@@ -345,14 +391,13 @@ fn a_run_that_is_killed_at_any_moment_goes_on_with_what_is_missing() {
             // Once more from the beginning: a finished film cannot be broken off.
             fs::remove_file(bench.path("killed.mp4")).unwrap();
             fs::remove_dir_all(bench.path("killed.mp4.frames")).unwrap();
-            before = 0;
+            there.clear();
         }
     }
-    let told = bench.succeed(&format!("{words} -o killed.mp4"));
-    assert!(
-        told.contains(&format!("{} frames made", 24 - before)),
-        "{told}"
-    );
+    assert!(n_resumed >= KILLS / 2, "only {n_resumed} runs found frames");
+    let told = bench.succeed(&format!("{words} killed.mp4"));
+    let missing = FRAMES as usize - there.len();
+    assert!(told.contains(&format!("{missing} frames made")), "{told}");
     assert!(bench.bytes("killed.mp4") == bench.bytes("whole.mp4"));
 }
 

@@ -13,14 +13,15 @@
 #[path = "support/browser.rs"]
 #[allow(dead_code, reason = "each test that uses a browser uses a part of it")]
 mod browser;
+#[path = "support/watching.rs"]
+mod watching;
 
 use browser::Browser;
 use std::fmt::Write;
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use watching::Watch;
 
 /// What is edited: the foxglove of the course.
 const MODEL: &str = "examples/course/04-two-blocks.rgg";
@@ -65,18 +66,8 @@ fn a_session_is_recorded() {
     let text = fs::read_to_string(model).unwrap();
     let save = |text: &str| fs::write(desk.path().join("foxglove.rgg"), text).unwrap();
     save(&text);
-    let mut child = Command::new(env!("CARGO_BIN_EXE_understory"))
-        .current_dir(desk.path())
-        .args(["watch", "foxglove.rgg", "--port", "0", "--steps", "30"])
-        .args(["--size", "480x320", "--samples", "16"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
-    let line = lines.find(|line| line.as_ref().unwrap().contains("http://"));
-    let address = line.unwrap().unwrap();
-    let address = address.split("open ").nth(1).unwrap().trim().to_owned();
-    std::thread::spawn(move || lines.for_each(drop));
+    let options = "--steps 30 --size 480x320 --samples 16";
+    let (_watch, address) = Watch::start(desk.path(), "foxglove.rgg", options);
     let mut page = Browser::start(1120, 700, desk.path()).unwrap();
     let mut reel = Reel {
         folder,
@@ -131,6 +122,4 @@ fn a_session_is_recorded() {
     page.keep(&reel.folder.join("dark.png"));
     page.dress(390, 1700, false);
     page.keep(&reel.folder.join("phone.png"));
-    let _ = child.kill();
-    let _ = child.wait();
 }

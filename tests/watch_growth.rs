@@ -77,9 +77,12 @@ impl<'w> Desk<'w> {
     }
 }
 
-fn grow(studio: &mut Studio<'_>, steps: &str) -> Option<Result<Growth, String>> {
+/// `options` is the number of steps, or that and the seed: `8 seed 2`.
+fn grow(studio: &mut Studio<'_>, options: &str) -> Option<Result<Growth, String>> {
+    let (steps, seed) = options.split_once(" seed ").unwrap_or((options, "1"));
     let mut flags = Options::default();
     flags.set("steps", steps, Origin::Flag).unwrap();
+    flags.set("seed", seed, Origin::Flag).unwrap();
     let opened = studio.read(&flags).unwrap();
     let run = studio.check(opened).ok()?;
     let grown = studio.grow(&run, &CancelToken::default());
@@ -225,6 +228,20 @@ fn what_depends_on_more_than_the_text_is_grown_from_where_it_does() {
     }
     // The file is read in step 4.
     assert_eq!(desk.studio.work.kept_steps, 3);
+}
+
+#[test]
+fn another_seed_is_another_growth() {
+    let world = Machine::new();
+    let mut desk = Desk::new(&world);
+    let one = desk.grow(PLANT, "8").unwrap();
+    let two = desk.grow(PLANT, "8 seed 2").unwrap();
+    assert_eq!(two, desk.afresh(PLANT, "8 seed 2").unwrap());
+    assert!(one != two && one.0.is_ok());
+    assert_eq!(desk.studio.work.kept_steps, 0);
+    // Only the growth before is known.
+    assert_eq!(desk.grow(PLANT, "8").unwrap(), one);
+    assert_eq!(desk.studio.work.kept_steps, 0);
 }
 
 /// A generator of numbers without any pretensions.

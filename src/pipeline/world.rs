@@ -479,7 +479,12 @@ mod tests {
         assert_eq!(world.entry(&path), Entry::Missing);
         world.try_folder(folder.path()).unwrap();
         world.replace(&path, b"one").unwrap();
+        let mut reader = std::fs::File::open(&path).unwrap();
         world.replace(&path, b"two").unwrap();
+        // Nothing is written over what is there: who was reading it reads it to its end.
+        let mut old = Vec::new();
+        reader.read_to_end(&mut old).unwrap();
+        assert_eq!(old, if cfg!(unix) { b"one" } else { b"two" });
         assert_eq!(world.read(&path).unwrap(), b"two");
         assert_eq!(world.head(&path, 2).unwrap(), b"tw");
         assert_eq!(world.list(folder.path()).unwrap(), [path]);

@@ -135,6 +135,7 @@ fn attend(mut watched: Watched<'_>, jobs: &Sender<Job>, events: &Receiver<Event>
 mod tests {
     use super::*;
     use crate::pipeline::world::fake::FakeWorld;
+    use std::time::Duration;
 
     /// Tells each run to the test, and does what the model's text says.
     struct Puppet<'a> {
@@ -163,20 +164,29 @@ mod tests {
         }
     }
 
-    #[test]
-    fn changes_run_again_whatever_the_last_run_did() {
+    /// How long a test waits for what must come.
+    const PATIENCE: Duration = Duration::from_secs(60);
+
+    /// Ends watching however a test ends.
+    struct Ending(Sender<Event>);
+
+    impl Drop for Ending {
+        fn drop(&mut self) {
+            let _ = self.0.send(Event::Quit);
+        }
+    }
+
+    /// Watches a world whose model says `one` while `test` runs; it is given the world, the next thing that the puppet tells,
+    /// and a way to tell of a touch.
+    fn watching(test: impl FnOnce(&FakeWorld, &dyn Fn() -> String, &dyn Fn())) {
         let world = FakeWorld::default();
         world.put("m/p.rgg", "one");
         let (runs, seen) = channel();
         let (sender, events) = channel();
-        let mut puppet = Puppet {
-            world: &world,
-            runs,
-        };
         std::thread::scope(|scope| {
-            let (world, events_in) = (&world, sender.clone());
-            let puppet = &mut puppet;
+            let (world, own) = (&world, sender.clone());
             scope.spawn(move || {
+                let mut puppet = Puppet { world, runs };
                 let watched = Watched {
                     world,
                     model: Path::new("m/p.rgg"),
@@ -184,12 +194,20 @@ mod tests {
                     follower: None,
                     interrupt: &|| {},
                 };
-                watch(watched, puppet, events_in, events);
+                watch(watched, &mut puppet, own, events);
             });
-            let next = || seen.recv().unwrap();
+            let ending = Ending(sender);
+            let next = || seen.recv_timeout(PATIENCE).unwrap();
+            test(world, &next, &|| ending.0.send(Event::Touched).unwrap());
+        });
+    }
+
+    #[test]
+    fn changes_run_again_whatever_the_last_run_did() {
+        watching(|world, next, touch| {
             let change = |text: &str| {
                 world.put("m/p.rgg", text);
-                sender.send(Event::Touched).unwrap();
+                touch();
             };
             assert_eq!(next(), "one []");
             change("panic");
@@ -199,42 +217,18 @@ mod tests {
             assert_eq!(next(), "forever [\"p.rgg\"]");
             change("two");
             assert_eq!(next(), "two [\"p.rgg\"]");
-            sender.send(Event::Quit).unwrap();
         });
     }
 
     #[test]
     fn where_the_file_system_tells_nothing_it_is_asked() {
-        let world = FakeWorld::default();
-        world.put("m/p.rgg", "one");
-        let (runs, seen) = channel();
-        let (sender, events) = channel();
-        let mut puppet = Puppet {
-            world: &world,
-            runs,
-        };
-        std::thread::scope(|scope| {
-            let (world, events_in) = (&world, sender.clone());
-            let puppet = &mut puppet;
-            scope.spawn(move || {
-                let watched = Watched {
-                    world,
-                    model: Path::new("m/p.rgg"),
-                    reads: Reads::default(),
-                    follower: None,
-                    interrupt: &|| {},
-                };
-                watch(watched, puppet, events_in, events);
-            });
-            assert_eq!(seen.recv().unwrap(), "one []");
+        watching(|world, next, _| {
+            assert_eq!(next(), "one []");
             // Nobody says that anything was touched.
-            world.put("m/p.rgg", "two");
-            assert_eq!(seen.recv().unwrap(), "two [\"p.rgg\"]");
-            world.put("m/p.rgg", "forever");
-            assert_eq!(seen.recv().unwrap(), "forever [\"p.rgg\"]");
-            world.put("m/p.rgg", "three");
-            assert_eq!(seen.recv().unwrap(), "three [\"p.rgg\"]");
-            sender.send(Event::Quit).unwrap();
+            for text in ["two", "forever", "three"] {
+                world.put("m/p.rgg", text);
+                assert_eq!(next(), format!("{text} [\"p.rgg\"]"));
+            }
         });
     }
 }
