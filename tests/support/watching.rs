@@ -5,11 +5,11 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 /// A running `watch`, ended when it is dropped.
-pub struct Watch(Child);
+pub(crate) struct Watch(Child);
 
 impl Watch {
     /// Starts it on a model in this folder; gives the address of its page, too.
-    pub fn start(folder: &Path, model: &str, options: &str) -> (Self, String) {
+    pub(crate) fn start(folder: &Path, model: &str, options: &str) -> (Self, String) {
         let mut child = Command::new(env!("CARGO_BIN_EXE_understory"))
             .current_dir(folder)
             .args(["watch", model, "--port", "0"])
