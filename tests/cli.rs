@@ -249,12 +249,18 @@ fn a_view_straight_down_is_a_map() {
     assert!(bench.fail(&format!("{line} --up 0,0,1"), 2).contains("up"));
 }
 
+/// The time is that of the whole film: what it allows is chosen once, and kept beside the frames.
 #[test]
-fn a_film_does_not_end_by_the_clock() {
+fn a_wanted_time_is_that_of_the_film() {
     let bench = Bench::new("protected void init() [ Axiom ==> F(1); ]\n");
     bench.write("m.toml", "[render]\ntime = 0.3\n");
-    let message = bench.fail(&format!("fly m.rgg --orbit --frames 0..1 -o f {SMALL}"), 2);
-    assert!(message.contains("time"), "{message}");
+    let line = "fly m.rgg --orbit --flight-frames 3 --flicker 0 -o f --size 24x16";
+    bench.succeed(line);
+    assert!(bench.path("f/chosen.toml").exists());
+    let message = bench.fail(&format!("{line} --error 0.1"), 2);
+    assert!(message.contains("`time` and `error`"), "{message}");
+    let saved = "render m.rgg -o m.png --renderer photon --save-solution s --size 24x16";
+    assert!(bench.fail(saved, 2).contains("--save-solution"));
 }
 
 #[test]

@@ -116,7 +116,7 @@ impl Bench {
         let path = self.path(output);
         let made = if path.extension().is_some() {
             let target = PictureTarget::new(&self.world, &path)?;
-            making.picture(studio, &run, &target)?
+            making.picture(studio, &mut run, &target)?
         } else {
             fs::create_dir_all(&path).unwrap();
             let reel = Reel::new(&self.world, &path)?;

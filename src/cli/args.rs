@@ -136,6 +136,13 @@ pub struct SolutionArgs {
     pub save_solution: Option<PathBuf>,
 }
 
+impl SolutionArgs {
+    /// Whether a file is named.
+    pub fn has_files(&self) -> bool {
+        self.solution.is_some() || self.save_solution.is_some()
+    }
+}
+
 /// `render`
 #[derive(Debug, Args)]
 #[command(

@@ -51,7 +51,9 @@ pub(super) fn script(plan: &Plan<'_>) -> String {
         && keys
             .iter()
             .all(|key| key.step.is_none() && key.sun.is_none());
-    let is_named = plan.words.iter().any(|word| word.contains("solution"));
+    // What is chosen is chosen by the first job, and kept beside the frames: the script does not know it.
+    let is_chosen = options.time.value.is_some() || options.error.value.is_some();
+    let is_named = is_chosen || plan.words.iter().any(|word| word.contains("solution"));
     let (save, read) = if options.renderer.value == Renderer::Photon && is_one_scene && !is_named {
         let file = quoted(&solution.to_string_lossy());
         (

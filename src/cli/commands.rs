@@ -9,6 +9,7 @@ use crate::growth::Growth;
 use crate::options::Command;
 use crate::options::value::Renderer;
 use crate::pipeline::budget;
+use crate::pipeline::choosing::Wish;
 use crate::pipeline::exporting;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::growing;
@@ -105,12 +106,16 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     studio.solution_files = solution_files(shell, &args.light, output)?;
     run(shell, &mut studio, |studio, run| {
         studio.solution_files.check(&run.options)?;
+        Wish::check(&run.options, args.light.has_files())?;
         check_wishes(&shell.world, run)?;
         let made = shell.making(Partial::Keep).picture(studio, run, &target)?;
         shell.report(report.as_ref(), run, studio, &made)?;
         shell
             .terminal
             .note(&summary(target.path(), run, studio, &made));
+        for note in &made.notes {
+            shell.terminal.note(note);
+        }
         finished(&made)
     })
 }

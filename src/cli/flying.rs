@@ -7,6 +7,7 @@ use super::shell::Shell;
 use crate::animation::FilmShape;
 use crate::image::{Format, Picture};
 use crate::options::Command;
+use crate::pipeline::choosing::Wish;
 use crate::pipeline::course;
 use crate::pipeline::failure::Failure;
 use crate::pipeline::making::{Made, Partial};
@@ -42,6 +43,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
     studio.solution_files = solution_files(shell, &args.light, output)?;
     run(shell, &mut studio, |studio, run| {
         studio.solution_files.check(&run.options)?;
+        Wish::check(&run.options, args.light.has_files())?;
         let shape = check(shell, run)?;
         let reel = reel.with(run.options.frame_format.value, shape)?;
         if let Some(script) = &script {
@@ -62,6 +64,9 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
         let seconds = studio.seconds.summary();
         for line in summary(&reel, shape, &made, &seconds) {
             shell.terminal.note(&line);
+        }
+        for note in &made.notes {
+            shell.terminal.note(note);
         }
         finished(&made)
     })

@@ -260,6 +260,7 @@ impl Outlet for Pictures<'_> {
             solution: finished.solution,
             flicker: None,
             has_film: false,
+            notes: Vec::new(),
         };
         shell.report(self.report.as_ref(), run, studio, &made)?;
         shell.terminal.finish_stage();

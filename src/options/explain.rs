@@ -33,6 +33,7 @@ pub fn describe(origin: Origin, sources: &SourceMap) -> String {
     match origin {
         Origin::Default => "default".into(),
         Origin::Preset(name) => format!("preset {name}"),
+        Origin::Chosen { .. } => "chosen".into(),
         Origin::Sidecar(span) => {
             let name = sources.file(span.file).map_or("file", |file| &file.name);
             format!("{name}:{}", sources.line_column(span).0)

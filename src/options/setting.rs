@@ -10,6 +10,12 @@ pub enum Origin {
     Default,
     /// The preset of this name (`--quality`).
     Preset(&'static str),
+    /// The program, to keep to a wanted time or error (`--time`, `--error`). What the user names is stronger, unless the wish stands on
+    /// the command line and the value only in the file beside the model.
+    Chosen {
+        /// Whether it wins over that file.
+        over_file: bool,
+    },
     /// The file beside the model, at this place.
     Sidecar(Span),
     /// The command line.
@@ -27,8 +33,10 @@ impl Origin {
         match self {
             Self::Default => 0,
             Self::Preset(_) => 1,
-            Self::Sidecar(_) => 2,
-            Self::Flag => 3,
+            Self::Chosen { over_file: false } => 2,
+            Self::Sidecar(_) => 3,
+            Self::Chosen { over_file: true } => 4,
+            Self::Flag => 5,
         }
     }
 }

@@ -285,8 +285,10 @@ options! {
     subdivision_depth: SplitDepth = "3", "subdivision-depth", "N", Render, Solution, SOLVING;
     /// Points of each lamp and of the sky that the ray tracer asks for light at each surface
     light_samples: NonZeroU32 = "1", "light-samples", "N", Render, View, PICTURING;
-    /// Keeps adding samples until so many seconds of rendering are over, and stops then whatever `samples` says
-    time: Option<Seconds> = "none", "time", "SECONDS", Render, View, &[Render, Watch];
+    /// Seconds that the light of the picture, or of the whole film, may take: renderer and settings that nobody names are chosen for the least error in that time; `watch` only adds samples until it is over
+    time: Option<Seconds> = "none", "time", "SECONDS", Render, View, PICTURING;
+    /// Error that the picture, or each frame, may have, as a part of 1 or in percent: renderer and settings that nobody names are chosen to reach it soonest
+    error: Option<Fraction> = "none", "error", "FRACTION", Render, View, &[Render, Fly];
     /// What is done though the scene does not require it, to see that nothing changes but time: names that `--explain-scene` lists, or `all`
     require: Features = "none", "require", "NAME,NAME", Render, Scene, LIGHTING;
     /// Brightness: radiance is multiplied by 2 to this power before it is shown; `auto`: decided from the picture

@@ -25,13 +25,9 @@ const WAYS: &str = "`--orbit` flies once round the model, `--turntable` turns it
 /// Refuses what cannot be a flight, before the model is grown.
 ///
 /// # Errors
-/// No way or several, frames that the flight does not have, a film that ends by the clock.
+/// No way or several, frames that the flight does not have.
 pub fn check(options: &Options) -> Result<(), Failure> {
     let usage = |text: String| Err(Failure::Usage(text));
-    if options.time.value.is_some() {
-        // Frames that end by the clock would not be the same bytes twice.
-        return usage("a film has no `time`: its frames end after `samples`".into());
-    }
     let ways = ways(options);
     match ways[..] {
         [] if options.grow.value.is_none() => {

@@ -3,23 +3,24 @@
 //! Frames that show the same scene share it and the light in it. The random numbers of a pixel come from the seed and the
 //! pixel, not from the frame, and those of photon mapping lie on the surfaces: where nothing moves, nothing changes.
 
-use super::audience::Audience;
+use super::choosing::{Wish, told};
 use super::content_hash::ContentHash;
 use super::course;
 use super::exposing;
 use super::failure::Failure;
+use super::frame::{FrameAudience, describe};
 use super::making::{Made, Making};
 use super::reel::Reel;
 use super::report::{Effort, Phase, SolutionFacts};
 use super::solving::Solved;
 use super::studio::{Run, Studio};
+use super::until::Until;
 use super::viewing::{Prepared, Viewing};
 use super::viewpoint;
 use crate::animation::flicker::{self, Flicker, FlickerMeter};
 use crate::animation::plan;
 use crate::animation::{FilmShape, Flight, Moment};
 use crate::camera::{Camera, View};
-use crate::diag::{Diagnostics, SourceMap};
 use crate::film::LinearImage;
 use crate::image::{Format, Picture, Pixels};
 use crate::options::{Options, Origin};
@@ -30,14 +31,14 @@ use std::sync::Arc;
 const OTHER_SEED: i64 = 0x0066_6c69_636b_6572;
 
 /// A frame to be.
-struct Job {
-    frame: u32,
-    moment: Moment,
-    camera: Camera,
+pub(super) struct Job {
+    pub(super) frame: u32,
+    pub(super) moment: Moment,
+    pub(super) camera: Camera,
     /// Equal for frames that show the same scene.
-    scene: ContentHash,
+    pub(super) scene: ContentHash,
     /// All that the frame is made from.
-    key: String,
+    pub(super) key: String,
 }
 
 /// A scene with the light that all cameras share.
@@ -48,12 +49,16 @@ struct Set {
 }
 
 /// A film under way.
-struct Shooting<'a, 'w> {
-    making: Making<'a>,
-    studio: &'a mut Studio<'w>,
-    run: &'a mut Run,
-    /// The options as the user gave them.
-    base: Options,
+pub(super) struct Shooting<'a, 'w> {
+    pub(super) making: Making<'a>,
+    pub(super) studio: &'a mut Studio<'w>,
+    pub(super) run: &'a mut Run,
+    /// The options as the user gave them, and as they were chosen for a wanted time or error.
+    pub(super) base: Options,
+    /// When a frame is done.
+    pub(super) until: Until,
+    /// Whether frames are judged by path tracing.
+    pub(super) is_checked: bool,
     set: Option<Set>,
     done: Done,
 }
@@ -98,6 +103,9 @@ impl Making<'_> {
         let shape = course::shape(&run.options);
         let mut shooting = Shooting::new(self, studio, run);
         let flight = shooting.flight()?;
+        if let Some(wish) = Wish::of(&shooting.base)? {
+            shooting.choose(&flight, reel, wish)?;
+        }
         let jobs = shooting.jobs(&flight)?;
         let wanted = shooting.base.frames.value.clone().unwrap_or(flight.all());
         let (mut missing, mut is_elsewhere_whole) = (Vec::new(), true);
@@ -139,6 +147,8 @@ impl<'a, 'w> Shooting<'a, 'w> {
             studio,
             base: run.options.clone(),
             run,
+            until: Until::Samples,
+            is_checked: false,
             set: None,
             done: Done::default(),
         }
@@ -156,7 +166,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
     }
 
     /// Sets the options to those of one moment.
-    fn set_moment(
+    pub(super) fn set_moment(
         &mut self,
         step: Option<f64>,
         sun: Option<crate::animation::SunPlace>,
@@ -180,7 +190,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
     }
 
     /// All frames of the flight with all that each is made from.
-    fn jobs(&mut self, flight: &Flight) -> Result<Vec<Job>, Failure> {
+    pub(super) fn jobs(&mut self, flight: &Flight) -> Result<Vec<Job>, Failure> {
         let cameras = course::cameras(self.run, flight)?;
         let panorama = self.studio.panorama(self.run)?;
         let panorama = ContentHash::of(panorama.as_ref().map(|(_, file)| &file[..]));
@@ -320,10 +330,14 @@ impl<'a, 'w> Shooting<'a, 'w> {
             audience: progress,
             ..self.making.viewing(self.run)
         };
-        let shoot = || viewing.shoot(prepared, &job.camera);
-        let shot = self.studio.seconds.time(world, Phase::Render, shoot)?;
+        let shoot = || viewing.take(prepared, &job.camera, self.until, &mut |_| {});
+        let mut shot = self.studio.seconds.time(world, Phase::Render, shoot)?;
         if !shot.is_whole {
             return Ok(false);
+        }
+        if let Some(set) = self.set.as_ref().filter(|_| self.is_checked) {
+            let check = || viewing.judged(&set.scene, &job.camera, &shot);
+            shot.effort.error = self.studio.seconds.time(world, Phase::Check, check)?;
         }
         let run = &*self.run;
         let hash = self.studio.seconds.time(world, Phase::Write, || {
@@ -400,7 +414,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
                 ..this.making.viewing(this.run)
             };
             let world = this.making.world;
-            let shoot = || viewing.shoot(prepared, &job.camera);
+            let shoot = || viewing.take(prepared, &job.camera, this.until, &mut |_| {});
             let shot = this.studio.seconds.time(world, Phase::Render, shoot)?;
             Ok(shot.is_whole.then_some(shot.image))
         })
@@ -421,6 +435,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
         // Single frames had options of their own.
         self.run.options = self.base;
         self.run.part = 0.0;
+        let notes = told(self.run).into_iter().collect();
         let mut done = self.done;
         done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
         let all: String = done
@@ -438,6 +453,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
             solution: done.solution,
             flicker,
             has_film: film.is_some(),
+            notes,
         }
     }
 }
@@ -453,48 +469,4 @@ impl Done {
         self.effort = Some(self.effort.map_or(effort, |all| all.and(effort)));
         self.n_made += 1;
     }
-}
-
-/// A moment in words, for the texts of its frame.
-fn describe(moment: &Moment) -> String {
-    let view = &moment.view;
-    let mut text = format!(
-        "eye={} target={} fov={}",
-        view.eye,
-        view.target,
-        view.fov.degrees()
-    );
-    if let Some(step) = moment.step {
-        text.push_str(&format!(" step={step}"));
-    }
-    if let Some(sun) = moment.sun {
-        text.push_str(&format!(" sun={},{}", sun.azimuth, sun.elevation));
-    }
-    text
-}
-
-/// Turns the progress of a single frame into that of the film.
-struct FrameAudience<'a> {
-    audience: &'a dyn Audience,
-    index: u64,
-    n_frames: u64,
-}
-
-impl Audience for FrameAudience<'_> {
-    fn printed(&self, text: &str) {
-        self.audience.printed(text);
-    }
-
-    fn warned(&self, sources: &SourceMap, found: &Diagnostics) {
-        self.audience.warned(sources, found);
-    }
-
-    fn begins(&self, _: &'static str) {}
-
-    fn progress(&self, done: u64, total: u64) {
-        self.audience
-            .progress(self.index * total + done, self.n_frames * total);
-    }
-
-    fn ends(&self) {}
 }

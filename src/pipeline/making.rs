@@ -1,21 +1,22 @@
 //! From a model to a picture file. Films: [`filming`](super::filming).
 
 use super::audience::Audience;
+use super::choosing::Wish;
 use super::content_hash::ContentHash;
 use super::exposing;
 use super::failure::Failure;
 use super::report::{Effort, Phase, SolutionFacts};
 use super::store::PictureTarget;
 use super::studio::{Run, Studio};
-use super::viewing::{Shot, Viewing};
+use super::viewing::Viewing;
 use super::viewpoint;
+use super::wished::Taken;
 use super::world::World;
 use crate::animation::flicker::Flicker;
-use crate::camera::Camera;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::integrator::CancelToken;
-use crate::options::value::Renderer;
 use crate::scene::Scene;
+use std::sync::Arc;
 
 /// What came out of a run.
 #[derive(Debug)]
@@ -38,6 +39,8 @@ pub struct Made {
     pub flicker: Option<Flicker>,
     /// Whether a film was written, not only frames.
     pub has_film: bool,
+    /// For people: what was chosen, and what was missed.
+    pub notes: Vec<String>,
 }
 
 /// What becomes of a picture that was stopped before it had all its samples.
@@ -101,64 +104,49 @@ impl Making<'_> {
         warnings
     }
 
-    /// Finds out how wrong a picture is, by a method that is wrong in other ways than noise. Stopped meanwhile, the picture is as good
-    /// as it was; only how good is not known.
-    fn check(
-        &self,
-        studio: &mut Studio<'_>,
-        run: &Run,
-        (scene, camera): (&Scene, &Camera),
-        shot: &mut Shot,
-    ) -> Result<(), Failure> {
-        if run.options.renderer.value == Renderer::Path {
-            return Ok(());
-        }
-        shot.effort.error = None;
-        self.audience.begins("checking");
-        let viewing = self.viewing(run);
-        let check = || viewing.spot_check(scene, camera, shot);
-        match studio.seconds.time(self.world, Phase::Check, check) {
-            Ok(error) => shot.effort.error = error,
-            Err(Failure::Stopped) => {}
-            Err(failure) => return Err(failure),
-        }
-        Ok(())
-    }
-
-    /// Makes the picture of a run. Stopped early, the picture is written with the samples so far.
+    /// Makes the picture of a run. Stopped early, the picture is written with the samples so far. The options of the run are then those
+    /// that it was made with, also where they were chosen for a wanted time or error.
     ///
     /// # Errors
     /// If any stage fails, or it was stopped before there was a picture.
     pub fn picture(
         &self,
         studio: &mut Studio<'_>,
-        run: &Run,
+        run: &mut Run,
         target: &PictureTarget,
     ) -> Result<Made, Failure> {
         let scene = studio.build(run, self.cancel)?;
-        let view = viewpoint::of_scene(&run.options, &scene);
+        self.picture_of(studio, run, &scene, target)
+    }
+
+    /// The same of a scene that is there.
+    ///
+    /// # Errors
+    /// As [`picture`](Self::picture).
+    pub fn picture_of(
+        &self,
+        studio: &mut Studio<'_>,
+        run: &mut Run,
+        scene: &Arc<Scene>,
+        target: &PictureTarget,
+    ) -> Result<Made, Failure> {
+        let view = viewpoint::of_scene(&run.options, scene);
         let camera = viewpoint::camera(&run.sources, &run.options, &view)?;
-        let viewing = self.viewing(run);
-        let warnings = self.warn(run, &viewing, &scene);
-
-        self.audience.begins("preparing");
-        let solved = studio.solve(run, &scene, &viewing)?;
-        let (prepared, exposure) = studio.seconds.time(self.world, Phase::Prepare, || {
-            let prepared = viewing.prepare(&scene, &solved.solution)?;
-            let exposure = viewing.exposure(&scene, &prepared, &camera)?;
-            Ok::<_, Failure>((prepared, exposure))
-        })?;
-        self.audience.begins("rendering");
-        studio.work.views += 1;
-        let mut shot = studio.seconds.time(self.world, Phase::Render, || {
-            viewing.shoot(&prepared, &camera)
-        })?;
-        self.check(studio, run, (&scene, &camera), &mut shot)?;
+        // Of a method that is chosen, once it is.
+        let is_named = Wish::of(&run.options)?.is_none();
+        let early = is_named.then(|| self.warn(run, &self.viewing(run), scene));
+        let taken = self.take(studio, run, (scene, &camera))?;
         self.audience.ends();
-
+        let Taken {
+            shot,
+            exposure,
+            facts,
+            notes,
+        } = taken;
         if !shot.is_whole && self.partial == Partial::Drop {
             return Err(Failure::Stopped);
         }
+        let warnings = early.unwrap_or_else(|| self.warn(run, &self.viewing(run), scene));
         let hash = studio.seconds.time(self.world, Phase::Write, || {
             let picture = exposing::develop(&shot.image, target.format(), exposure);
             target.write(self.world, &picture, &run.texts())
@@ -170,9 +158,10 @@ impl Making<'_> {
             n_kept: 0,
             n_made: 1,
             warnings,
-            solution: solved.facts,
+            solution: facts,
             flicker: None,
             has_film: false,
+            notes,
         })
     }
 }

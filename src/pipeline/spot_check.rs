@@ -63,10 +63,10 @@ pub struct SquaredError {
     pub standard_error: f64,
 }
 
-/// The seed of the samples of a check of a picture with this seed.
+/// The seed of the samples of a check of a picture with this seed; checks that must not know of each other have different numbers.
 #[must_use]
-pub fn seed(picture: u64) -> u64 {
-    rng::hash(&[picture, CHECK])
+pub fn seed(picture: u64, which: u64) -> u64 {
+    rng::hash(&[picture, CHECK, which])
 }
 
 /// Samples of each of the two estimates of each pixel in a check of a picture of so many samples: a power of two.

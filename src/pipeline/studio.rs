@@ -385,7 +385,7 @@ impl<'w> Studio<'w> {
         };
         let sidecar = match run.options.sky.origin {
             Origin::Sidecar(span) => run.sources.map.file(span.file),
-            Origin::Default | Origin::Preset(_) | Origin::Flag => None,
+            Origin::Default | Origin::Preset(_) | Origin::Chosen { .. } | Origin::Flag => None,
         };
         let path = match sidecar {
             Some(file) => folder_of(Path::new(&*file.name)).join(path),

@@ -5,32 +5,29 @@ use super::budget;
 use super::exposing;
 use super::failure::Failure;
 use super::report::{Effort, PictureError};
-use super::spot_check::{self, SPOTS, Spots};
+use super::until::Until;
 use super::world::World;
 use crate::camera::Camera;
 use crate::film::{Filter, LinearImage, tone};
 use crate::integrator::driver::{FilmResult, FilmSettings, Refinement, render_view};
 use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
-    CancelToken, Integrator, Method, Path, PhotonMapping, Progress, RadianceEstimator, Radiosity,
-    Raytracer, RenderContext, RenderError, Solution, Unreadable,
+    CancelToken, Method, Path, PhotonMapping, Progress, RadianceEstimator, Radiosity, Raytracer,
+    RenderContext, RenderError, Solution, Unreadable,
 };
 use crate::options::Options;
 use crate::options::value::{GridSize, Renderer};
 use crate::sampler::SamplerKind;
 use crate::scene::Scene;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Longer side in pixels of the picture by which the exposure is decided.
 const EXPOSURE_SIDE: f64 = 96.0;
 /// Its samples per pixel: its blocks of 64 pixels then hold a thousand each.
 const EXPOSURE_SAMPLES: u32 = 16;
-/// With `--time`, samples are limited by the clock and by this only.
-const MOST_SAMPLES: u32 = 1 << 20;
-/// How often the clock is looked at with `--time`.
-const TICK: Duration = Duration::from_millis(20);
+/// More seconds than anybody waits, which the clock can still count.
+const LONGEST: f64 = 1e9;
 
 /// What looking at a scene needs besides the scene.
 #[derive(Clone, Copy)]
@@ -166,10 +163,10 @@ impl Viewing<'_> {
     /// # Errors
     /// If it was stopped before each pixel had a sample.
     pub fn shoot(&self, prepared: &Prepared<'_>, camera: &Camera) -> Result<Shot, Failure> {
-        self.refine(prepared, camera, &mut |_| {})
+        self.take(prepared, camera, Until::Samples, &mut |_| {})
     }
 
-    /// Takes a picture, and shows it after each pass on the way.
+    /// Takes a picture, and shows it after each pass on the way; with `--time`, until that is over.
     ///
     /// # Errors
     /// As [`shoot`](Self::shoot).
@@ -179,39 +176,11 @@ impl Viewing<'_> {
         camera: &Camera,
         show: &mut dyn FnMut(&FilmResult),
     ) -> Result<Shot, Failure> {
-        let seen = match self.options.time.value {
-            None => {
-                let report =
-                    |progress: Progress| self.audience.progress(progress.done, progress.total);
-                let context = self.context(self.cancel, &report);
-                let settings = self.settings();
-                let mut on_pass = |result: &FilmResult| {
-                    show(result);
-                    ControlFlow::Continue(())
-                };
-                render_view(
-                    &*prepared.estimator,
-                    camera,
-                    &settings,
-                    &context,
-                    &mut on_pass,
-                )
-            }
-            Some(seconds) => {
-                let time = Duration::from_secs_f64(seconds.0);
-                self.shoot_until(prepared, camera, time, show)
-            }
+        let until = match self.options.time.value {
+            None => Until::Samples,
+            Some(seconds) => Until::Time(Duration::from_secs_f64(seconds.0.min(LONGEST))),
         };
-        match seen {
-            Ok(result) => Ok(shot(&result, true)),
-            Err(RenderError::Cancelled {
-                partial: Some(result),
-            }) => {
-                let is_whole = self.options.time.value.is_some() && !self.cancel.is_cancelled();
-                Ok(shot(&result, is_whole))
-            }
-            Err(error) => Err(failure(&error)),
-        }
+        self.take(prepared, camera, until, show)
     }
 
     /// Takes a picture of another size, with this many samples everywhere: a first impression.
@@ -241,94 +210,7 @@ impl Viewing<'_> {
         }
     }
 
-    /// How wrong a picture of so many samples is that `camera` took of this scene: noise and bias together. `None` if the path tracer,
-    /// by which it is judged, would not find all light there is. Always the same for the same picture, scene, options and camera.
-    ///
-    /// # Errors
-    /// If it was stopped.
-    pub fn spot_check(
-        &self,
-        scene: &Scene,
-        camera: &Camera,
-        shot: &Shot,
-    ) -> Result<Option<PictureError>, Failure> {
-        let path = Path::default();
-        if !path.shortcomings(scene).is_empty() {
-            return Ok(None);
-        }
-        let report = |progress: Progress| self.audience.progress(progress.done, progress.total);
-        let context = RenderContext {
-            seed: spot_check::seed(self.options.seed.value.cast_unsigned()),
-            ..self.context(self.cancel, &report)
-        };
-        let image = &shot.image;
-        let check = || {
-            let estimator = path.prepare(scene, &context)?;
-            let mut spots = Spots::draw((image.width, image.height), SPOTS, context.seed);
-            let samples = 2 * spot_check::samples_of_half(shot.effort.n_samples);
-            spots.sample(&*estimator, camera, &self.settings(), samples, &context)?;
-            Ok(spots.error_of_image(image).root())
-        };
-        check()
-            .map(Some)
-            .map_err(|error: RenderError| failure(&error))
-    }
-
-    /// Adds samples until the time is over, but at least one to each pixel.
-    fn shoot_until(
-        &self,
-        prepared: &Prepared<'_>,
-        camera: &Camera,
-        time: Duration,
-        show: &mut dyn FnMut(&FilmResult),
-    ) -> Result<FilmResult, RenderError> {
-        let start = self.world.now();
-        let elapsed = || self.world.now().saturating_sub(start);
-        let report = |_: Progress| {
-            self.audience.progress(
-                elapsed().min(time).as_millis() as u64,
-                time.as_millis() as u64,
-            );
-        };
-        let settings = FilmSettings {
-            samples_per_pixel: MOST_SAMPLES,
-            ..self.settings()
-        };
-        let (has_picture, is_done) = (AtomicBool::new(false), AtomicBool::new(false));
-        let stop = CancelToken::default();
-        std::thread::scope(|scope| {
-            scope.spawn(|| {
-                while !is_done.load(Ordering::Relaxed) {
-                    let is_over = elapsed() >= time && has_picture.load(Ordering::Relaxed);
-                    if is_over || self.cancel.is_cancelled() {
-                        stop.cancel();
-                    }
-                    std::thread::sleep(TICK);
-                }
-            });
-            let context = self.context(&stop, &report);
-            let mut on_pass = |result: &FilmResult| {
-                has_picture.store(true, Ordering::Relaxed);
-                show(result);
-                if elapsed() >= time {
-                    ControlFlow::Break(())
-                } else {
-                    ControlFlow::Continue(())
-                }
-            };
-            let seen = render_view(
-                &*prepared.estimator,
-                camera,
-                &settings,
-                &context,
-                &mut on_pass,
-            );
-            is_done.store(true, Ordering::Relaxed);
-            seen
-        })
-    }
-
-    fn settings(&self) -> FilmSettings {
+    pub(super) fn settings(&self) -> FilmSettings {
         let options = self.options;
         let size = options.size.value;
         // A number of samples that is asked for more expressly than the grid wins over it.
@@ -421,7 +303,7 @@ pub(super) fn failure(error: &RenderError) -> Failure {
     }
 }
 
-fn shot(result: &FilmResult, is_whole: bool) -> Shot {
+pub(super) fn shot(result: &FilmResult, is_whole: bool) -> Shot {
     let report = &result.report;
     let effort = Effort {
         n_rays: report.rays.total(),
@@ -436,6 +318,6 @@ fn shot(result: &FilmResult, is_whole: bool) -> Shot {
     }
 }
 
-fn go_on(_: &FilmResult) -> ControlFlow<()> {
+pub(super) fn go_on(_: &FilmResult) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }

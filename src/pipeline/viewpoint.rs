@@ -120,7 +120,7 @@ fn blame(sources: &Sources, options: &Options, error: &CameraError) -> Failure {
     let origins: Vec<Origin> = origins.collect();
     let file = origins.iter().find_map(|origin| match origin {
         Origin::Sidecar(span) => Some(*span),
-        Origin::Default | Origin::Preset(_) | Origin::Flag => None,
+        Origin::Default | Origin::Preset(_) | Origin::Chosen { .. } | Origin::Flag => None,
     });
     match file {
         Some(span) if !origins.contains(&Origin::Flag) => Failure::model(

@@ -135,6 +135,7 @@ pub fn values(options: &Options) -> BTreeMap<&'static str, Value> {
         let origin = match entry.origin {
             Origin::Default => "default",
             Origin::Preset(_) => "preset",
+            Origin::Chosen { .. } => "chosen",
             Origin::Sidecar(_) => "file",
             Origin::Flag => "flag",
         };
