@@ -35,7 +35,7 @@ use std::ops::Range;
 /// Pixels that are looked at, about.
 pub const SPOTS: u32 = 1024;
 /// Samples of each estimate of a pixel: at least, and at most.
-const SAMPLES_OF_HALF: Range<u32> = 32..512;
+const SAMPLES_OF_HALF: Range<u32> = 8..512;
 /// A check takes a sample for so many of the picture.
 const PICTURE_SAMPLES: u64 = 32;
 /// Keeps the random numbers of a check apart from those of pictures.
@@ -427,7 +427,7 @@ mod tests {
 
     #[test]
     fn larger_pictures_are_checked_with_more_samples() {
-        assert_eq!(samples_of_half(0), 32);
+        assert_eq!(samples_of_half(0), 8);
         assert_eq!(samples_of_half(960 * 640 * 16), 128);
         assert_eq!(samples_of_half(u64::MAX), 512);
     }
