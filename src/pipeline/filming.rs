@@ -435,7 +435,14 @@ impl<'a, 'w> Shooting<'a, 'w> {
         // Single frames had options of their own.
         self.run.options = self.base;
         self.run.part = 0.0;
-        let notes = told(self.run).into_iter().collect();
+        let notes = match self.until {
+            Until::Error { .. } => {
+                let text =
+                    "chosen: `--renderer path`, each frame with as many samples as its error needs";
+                vec![text.to_owned()]
+            }
+            Until::Samples | Until::Time(_) => told(self.run).into_iter().collect(),
+        };
         let mut done = self.done;
         done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
         let all: String = done

@@ -484,7 +484,9 @@ fn missed(shot: &Shot, most: f64, family: Family, path_seconds: Option<f64>) -> 
         ),
         (_, None) => "`--renderer path` would come nearer to it".to_owned(),
     };
+    let is_sure = error.low > most;
+    let verb = if is_sure { "is" } else { "may be" };
     Some(format!(
-        "the error is not the wanted {wanted} or less: {instead}"
+        "the error {verb} more than the wanted {wanted}: {instead}"
     ))
 }
