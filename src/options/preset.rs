@@ -39,10 +39,10 @@ const BUILT_IN: [(Quality, Renderer, Values); 9] = [
         Quality::Final,
         Renderer::Photon,
         &[
-            ("samples", "64"),
-            ("global-photons", "16000000"),
-            ("caustic-photons", "16000000"),
-            ("final-gather", "1024"),
+            ("samples", "32"),
+            ("global-photons", "4000000"),
+            ("caustic-photons", "4000000"),
+            ("final-gather", "512"),
         ],
     ),
     (

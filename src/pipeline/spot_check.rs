@@ -14,7 +14,8 @@
 //! Each is divided by `s² + ε`, `ε = 0.01 · mean²`, as [`crate::film::ErrorEstimate`] does: `s` is the picture's own `x`. Were it an
 //! estimate of `r` by the same `a` and `b`, it would be small where their product is, and the mean would be off by about `1.5 (σ/r)⁴` for
 //! a noise σ of each: as much as the error itself where that is a few per cent. Only where the picture has less than half of the light
-//! that `a` and `b` found is `s` their mean. There `x` as a measure would make any error of dark pixels look enormous, and the noise
+//! that `a` and `b` found is `s` their mean, and where it has far more, `s` is bounded: a pixel a million times too bright would otherwise
+//! be wrong by all of itself, which is 1. In the dark `x` as a measure would make any error of dark pixels look enormous, and the noise
 //! of `a` and `b` no longer decides.
 //!
 //! # Why this and not two radii or two meshes
@@ -42,6 +43,9 @@ const PICTURE_SAMPLES: u64 = 32;
 const CHECK: u64 = 0x0063_6865_636b;
 /// Where a picture has less than this part of the light, its error is relative to the light.
 const MOSTLY_MISSING: f64 = 0.5;
+/// Where it has more than so many times the light, and more than the mean, it is relative to that: light that is not there does not make
+/// itself small.
+const FAR_TOO_MUCH: f64 = 8.0;
 
 /// Some pixels of a picture, drawn evenly, with independent samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -173,13 +177,18 @@ impl Spots {
     #[must_use]
     pub fn error_of(&self, picture: &[f64]) -> SquaredError {
         let truth = |spot: &Spot| spot.pixel.mean().luminance();
+        let mean = self.mean(self.pixels.iter().map(truth));
         let seen = self.mean(picture.iter().copied());
-        let floor = self.floor(seen.max(self.mean(self.pixels.iter().map(truth))));
+        // Where the samples found no light at all there is only what the picture claims.
+        let floor = self.floor(if mean > 0.0 { mean } else { seen });
         let squares = self.pixels.iter().zip(picture).map(|(spot, x)| {
             let [a, b] = spot.pixel.halves.map(|half| half.mean().luminance());
             let found = truth(spot);
+            let most = FAR_TOO_MUCH * found + mean;
             let measure = if *x < MOSTLY_MISSING * found {
                 found
+            } else if *x > most && mean > 0.0 {
+                most
             } else {
                 *x
             };
@@ -320,7 +329,7 @@ mod tests {
     fn squared_error((width, height): (u32, u32), bias: f64) -> f64 {
         let image = biased((width, height), bias);
         let n = image.pixels.len() as f64;
-        let mean = image.pixels.iter().map(|p| p.luminance()).sum::<f64>() / n;
+        let mean = image.pixels.iter().map(|p| p.luminance()).sum::<f64>() / n / (1.0 + bias);
         let floor = DARK_PIXEL_FLOOR * mean * mean;
         let square = |p: &Rgb| {
             let x = p.luminance();
@@ -352,6 +361,18 @@ mod tests {
             }
             self
         }
+    }
+
+    /// Pixels a million times too bright do not hide behind themselves, nor raise the floor for all others.
+    #[test]
+    fn light_that_is_not_there_is_an_enormous_error() {
+        let size = (90, 60);
+        let mut image = biased(size, 0.0);
+        for pixel in image.pixels.iter_mut().step_by(20) {
+            *pixel *= 1e6;
+        }
+        let found = planted(size, 3).error_of_image(&image);
+        assert!(found.mean > 1e6, "{found:?}");
     }
 
     /// Unbiased: the mean of 200 checks meets the error within 4 standard errors of that mean (chance to fail by itself: 6e-5 each),
