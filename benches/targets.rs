@@ -4,8 +4,10 @@
 //! `--` change that: `size=96x64 seeds=3 reference=256 error=0.05 time=2 only=cornell`; `error=0` or `time=0` leaves that part out.
 //!
 //! The error of a picture is that by two long path-traced references `a`, `b` with other random numbers: the mean over pixels of
-//! (x - a)(x - b) / (r² + ε), r = (a + b)/2, ε = 0.01 · mean², has no bias by their noise. Met means: its root is at most what was promised,
-//! whatever the program itself says of it; that is printed beside. `0.1 % trimmed` leaves out the worst pixels in a thousand.
+//! (x - a)(x - b) / (r² + ε), r = (a + b)/2, ε = 0.01 · mean², has no bias by their noise. Met means: its root over all but the worst pixel in
+//! a thousand is at most what was promised, whatever the program itself says of it. That, and the root over all pixels, are printed
+//! beside: single pixels that are far too bright are part of it, and neither halves nor checks, which measure by the picture's own
+//! brightness, can tell how much too bright.
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -85,7 +87,7 @@ fn main() {
     let folder = tempfile::tempdir().unwrap();
     let world = Machine::new();
     println!(
-        "| scene | wish | met or kept | errors found (0.1 % trimmed) | errors told | seconds | renderers |\n\
+        "| scene | wish | met or kept | errors found (of all pixels) | errors told | seconds | renderers |\n\
          |---|---|---|---|---|---|---|"
     );
     let (mut n_met, mut n_all) = (0, 0);
@@ -128,8 +130,8 @@ fn row(
         .iter()
         .map(|picture| error(&picture.pixels, references))
         .collect();
-    let is_met = |(picture, [error, _]): (&Picture, &[f64; 2])| match key {
-        "error" => *error <= value,
+    let is_met = |(picture, [_, most]): (&Picture, &[f64; 2])| match key {
+        "error" => *most <= value,
         _ => (picture.seconds / value - 1.0).abs() <= KEPT,
     };
     let met = pictures
@@ -152,7 +154,7 @@ fn row(
         join(
             found
                 .iter()
-                .map(|[all, most]| format!("{} ({})", percent(*all), percent(*most)))
+                .map(|[all, most]| format!("{} ({})", percent(*most), percent(*all)))
                 .collect()
         ),
         join(pictures.iter().map(told).collect()),

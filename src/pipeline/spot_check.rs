@@ -18,6 +18,9 @@
 //! be wrong by all of itself, which is 1. In the dark `x` as a measure would make any error of dark pixels look enormous, and the noise
 //! of `a` and `b` no longer decides.
 //!
+//! A pixel that is far too bright (a firefly, the edge of a thin lamp) counts as wrong by 100 % at most, here as in
+//! [`crate::film::ErrorEstimate`]: measured by the truth it would be many times that, but nothing that is known of it tells how many.
+//!
 //! # Why this and not two radii or two meshes
 //! To judge a photon map by a second radius, or radiosity by a coarser mesh, sees one kind of bias each and needs as much time again.
 //! This sees all of them (blur, leaks, lost bounces, light left out), the same way for every method, for about a thirtieth of the time of
