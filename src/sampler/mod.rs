@@ -83,6 +83,15 @@ impl Sampler {
         }
     }
 
+    /// One of several samples that take the place of this one, spread together with those of the others of its stream.
+    #[must_use]
+    pub fn part(&self, nth: u32, of: u32) -> Self {
+        Self {
+            index: self.index.wrapping_mul(of).wrapping_add(nth),
+            ..self.clone()
+        }
+    }
+
     /// Moves to the pads of path vertex `vertex` (0: the camera).
     pub const fn start_vertex(&mut self, vertex: u32) {
         self.first_pad = vertex as u64 * PADS_PER_VERTEX;

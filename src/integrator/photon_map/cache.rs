@@ -12,6 +12,7 @@
 //! view finds them, yet each view shows what it would show alone.
 
 use super::grid::{Grid, cell};
+use super::guide::Guide;
 use super::hemisphere::Gathered;
 use super::irradiance::IrradianceMap;
 use crate::color::Rgb;
@@ -69,6 +70,7 @@ struct Record {
     per_metre: [Vec3; 3],
     /// Harmonic mean distance of surfaces, or what the nearest and the gradient allow, metres.
     distance: f32,
+    guide: Option<Guide>,
 }
 
 /// Makes what the cache keeps: always the same for the same place, given with its number.
@@ -219,6 +221,38 @@ impl IrradianceCache {
         }
     }
 
+    /// Where light comes from, roughly: as the nearest record of the widest level that has one has it.
+    pub(super) fn guide(&self, asked: &Asked, mut gather: impl Gather) -> Option<&Guide> {
+        let position = asked.position - self.center;
+        let levels = self.levels.iter().filter(|level| level.width <= asked.flat);
+        for level in levels.take_while(|level| level.width > LEAST_ANGLE * asked.eye) {
+            let mut nearest: Option<(f64, usize)> = None;
+            let reach = USE * level.width;
+            let thickness = SLOPE * reach + 0.01 * self.spacing;
+            level
+                .pins
+                .near_plane(position, asked.normal, thickness, |pin| {
+                    let from = position - pin.position.as_dvec3();
+                    let (square, at) = (from.length_squared(), pin.at as usize);
+                    if square >= reach * reach
+                        || pin.normal.as_dvec3().dot(asked.normal) < Self::SAME_NORMAL
+                        || from.dot(asked.normal).abs() > thickness
+                        || nearest.is_some_and(|(least, _)| least <= square)
+                        || self.trusted(at, &mut gather) < WORTHWHILE * level.width
+                    {
+                        return;
+                    }
+                    nearest = Some((square, at));
+                });
+            if let Some((_, at)) = nearest
+                && let Some(record) = self.record(at, &mut gather)
+            {
+                return record.guide.as_ref();
+            }
+        }
+        None
+    }
+
     /// Weighted sum over the records of a level near a point, and the sum of the weights.
     fn interpolate(
         &self,
@@ -268,7 +302,7 @@ impl IrradianceCache {
         let made = || {
             let trusted = self.trusted(at, gather);
             let found = gather.gather(at, &self.places[at])?;
-            Some(Box::new(Record::new(&found, trusted)))
+            Some(Box::new(Record::new(found, trusted)))
         };
         self.slots[at].record.get_or_init(made).as_deref()
     }
@@ -311,7 +345,7 @@ impl IrradianceCache {
 }
 
 impl Record {
-    fn new(found: &Gathered, trusted: f64) -> Self {
+    fn new(found: Gathered, trusted: f64) -> Self {
         let irradiance = DVec3::from_array(found.irradiance.to_array());
         // A record is not trusted beyond the nearest wall, nor farther than its gradient takes it to nothing or to the double.
         let slopes = found.per_metre.map(DVec3::length);
@@ -325,6 +359,7 @@ impl Record {
             per_turn: found.per_turn.map(|gradient| gradient.as_vec3()),
             per_metre: found.per_metre.map(|gradient| gradient.as_vec3()),
             distance: distance as f32,
+            guide: found.guide,
         }
     }
 

@@ -8,11 +8,14 @@
 //!
 //! Rays that end nearer than the map can resolve gather on with one ray, so corners do not leak.
 //!
-//! Where indirect light changes slowly it comes from a [cache](super::cache). Elsewhere (in corners, far away) each sample of
-//! the picture sends [`FinalGather::own_rays`] rays: few, because samples add up. From leaves, and under a sky, it is one, which
-//! also finds its part of the direct light.
+//! Where indirect light changes slowly it comes from a [cache](super::cache), whose records send more rays where light is uneven
+//! ([`hemisphere`](super::hemisphere)). Elsewhere (in corners, far away) each sample of the picture sends [`FinalGather::own_rays`]
+//! rays: few, because samples add up. Every other one goes where a record nearby has found light ([`guide`](super::guide)); both
+//! kinds are weighed by the balance heuristic ([`VeachGuibas1995`](crate::references#veachguibas1995)), so it costs no bias.
+//! From leaves, and under a sky, it is one ray, which also finds its part of the direct light.
 
 use super::cache::{Asked, Gather, IrradianceCache, Place};
+use super::guide::Guide;
 use super::hemisphere::{Gathered, Hemisphere};
 use super::irradiance::IrradianceMap;
 use super::stored::facing;
@@ -29,9 +32,9 @@ use crate::scene::{Piece, Scene, SurfacePoint};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// First vertex of the rays of a sample of the picture, and vertices of each.
+/// First vertex of the rays of a sample of the picture, and vertices from those that go everywhere to those that are guided.
 const FIRST_VERTEX: u32 = 1 << 22;
-const VERTICES: u32 = 1 << 8;
+const VERTICES: u32 = 1 << 9;
 
 /// Rays of the cache for each ray of a sample of the picture: samples of a pixel add up.
 const RAYS_PER_OWN: u32 = 32;
@@ -95,6 +98,24 @@ pub(super) struct OneSide<'a> {
     pub(super) media: &'a Media,
 }
 
+impl OneSide<'_> {
+    /// A question to the cache for an eye that is so far away.
+    fn asked(&self, eye: f64) -> Asked {
+        // A level that is wider than a leaf knows nothing of it.
+        let flat = match *self.piece {
+            Piece::Flat { size, .. } => size,
+            Piece::Body { flat, .. } => flat,
+            Piece::Large => f64::INFINITY,
+        };
+        Asked {
+            position: self.point.position,
+            normal: self.normal,
+            flat,
+            eye,
+        }
+    }
+}
+
 impl View<'_> {
     /// Indirect irradiance of a side for an eye that is so far away, W/m² per channel, as the cache has it, and how certain
     /// that is: 1 wholly, 0 not at all.
@@ -105,28 +126,16 @@ impl View<'_> {
         eye: f64,
         rays: &mut RayCounts,
     ) -> (Rgb, f64) {
-        // A level that is wider than a leaf knows nothing of it.
-        let flat = match *spot.piece {
-            Piece::Flat { size, .. } => size,
-            Piece::Body { flat, .. } => flat,
-            Piece::Large => f64::INFINITY,
-        };
-        let asked = Asked {
-            position: spot.point.position,
-            normal: spot.normal,
-            flat,
-            eye,
-        };
         let view = self;
         let gathering = Gathering { view, gather, rays };
-        gather.cache.irradiance(&asked, gathering)
+        gather.cache.irradiance(&spot.asked(eye), gathering)
     }
 
     /// The same, with what is not certain by rays.
     pub(super) fn accurate_irradiance(
         &self,
         gather: &FinalGather,
-        spot: &OneSide<'_>,
+        (spot, eye): (&OneSide<'_>, f64),
         (cached, certain): (Rgb, f64),
         sampler: &Sampler,
         rays: &mut RayCounts,
@@ -134,26 +143,54 @@ impl View<'_> {
         if certain >= 1.0 {
             return cached;
         }
-        let n = gather.own_rays();
-        let own = self.irradiance_by_rays(spot, n, sampler, rays);
+        let view = self;
+        let gathering = Gathering { view, gather, rays };
+        let guide = gather.cache.guide(&spot.asked(eye), gathering);
+        let own = self.irradiance_by_rays(spot, (gather.own_rays(), guide), sampler, rays);
         cached * certain + own * (1.0 - certain)
     }
 
-    /// Irradiance of a side by `n` rays whose random numbers begin at a vertex, W/m² per channel.
+    /// Irradiance of a side by `n` rays, W/m² per channel: half of them everywhere, half of them where the guide expects light.
     fn irradiance_by_rays(
         &self,
         spot: &OneSide<'_>,
-        n: u32,
+        (n, guide): (u32, Option<&Guide>),
         sampler: &Sampler,
         rays: &mut RayCounts,
     ) -> Rgb {
-        let sum: Rgb = (0..n)
-            .map(|ray| {
-                let vertex = FIRST_VERTEX.wrapping_add(ray.wrapping_mul(VERTICES));
-                self.irradiance_by_ray(spot, (vertex, true), |_| None, sampler, rays)
-            })
-            .sum();
-        sum / f64::from(n.max(1))
+        let n_guided = guide.map_or(0, |_| n / 2);
+        let n_even = n - n_guided;
+        let frame = Frame::from_normal(spot.normal);
+        let mut sum = Rgb::BLACK;
+        for ray in 0..n {
+            let (nth, of, guided) = if ray < n_even {
+                (ray, n_even, None)
+            } else {
+                (ray - n_even, n_guided, guide)
+            };
+            let vertex = FIRST_VERTEX + u32::from(guided.is_some()) * VERTICES;
+            let mut sampler = sampler.part(nth, of);
+            sampler.start_vertex(vertex);
+            let u = sampler.point(Use::Direction);
+            let wi = guided.map_or_else(
+                || frame.to_world(warp::cosine_hemisphere(u)),
+                |guide| guide.direction(u),
+            );
+            let cosine = wi.dot(spot.normal).max(0.0);
+            let expected = guide.map_or(0.0, |guide| guide.pdf_solid_angle(wi));
+            let density = f64::from(n_even) * cosine / PI + f64::from(n_guided) * expected;
+            if cosine > 0.0 {
+                let asker = Asker::Gather {
+                    vertex,
+                    may_go_on: true,
+                    last: None,
+                };
+                let light = self.radiance_by_ray(spot, wi, asker, &mut sampler, rays);
+                // The balance heuristic over both.
+                sum += light * (cosine / density);
+            }
+        }
+        sum
     }
 
     /// Irradiance of a side by a ray whose random numbers begin at a vertex, W/m² per channel; `last` tells for its direction
@@ -170,18 +207,28 @@ impl View<'_> {
         sampler.start_vertex(vertex);
         let frame = Frame::from_normal(spot.normal);
         let wi = frame.to_world(warp::cosine_hemisphere(sampler.point(Use::Direction)));
-        let mut media = *spot.media;
-        let bodies = &self.viewer.carrier.bodies;
-        let ends = [spot.wo, wi];
-        bodies.cross(&mut media, spot.point, &frame_of(spot.point), ends);
         let asker = Asker::Gather {
             vertex,
             may_go_on,
             last: last(wi),
         };
+        self.radiance_by_ray(spot, wi, asker, &mut sampler, rays) * PI
+    }
+
+    /// Radiance along a ray from a side, W/(m² sr) per channel.
+    fn radiance_by_ray(
+        &self,
+        spot: &OneSide<'_>,
+        wi: DVec3,
+        asker: Asker,
+        sampler: &mut Sampler,
+        rays: &mut RayCounts,
+    ) -> Rgb {
+        let mut media = *spot.media;
+        let (bodies, frame) = (&self.viewer.carrier.bodies, frame_of(spot.point));
+        bodies.cross(&mut media, spot.point, &frame, [spot.wo, wi]);
         let ray = spot.point.spawn_ray(wi);
-        let arriving = self.light_along(&ray, media, asker, &mut sampler, rays);
-        arriving.radiance * PI
+        self.light_along(&ray, media, asker, sampler, rays).radiance
     }
 }
 
@@ -228,7 +275,13 @@ impl Gather for Gathering<'_, '_> {
         let stream = rng::hash(&[self.gather.settings.seed, at as u64]);
         let side = facing(point.normal_g, place.normal.as_dvec3());
         let hemisphere = Hemisphere::new(side, self.gather.settings.rays);
-        Some(hemisphere.gather(stream, |wi, sampler| {
+        let scene = self.view.viewer.carrier.scene;
+        let map = self.view.maps.global.as_ref();
+        let expected = map.map_or(Rgb::BLACK, |map| {
+            map.irradiance(scene, &point, &scene.piece(point.primitive), side)
+        });
+        let expected = expected.r + expected.g + expected.b;
+        Some(hemisphere.gather(stream, expected, |wi, sampler| {
             let asker = Asker::Gather {
                 vertex: 0,
                 may_go_on: true,

@@ -17,6 +17,7 @@
 //! progressive passes in the memory of one           solution    all of it, kept and as bytes
 //! hemisphere  irradiance and its gradients by rays  cache       gathered irradiance, kept for all cameras
 //! final_gather  indirect light by rays instead of from the map
+//! guide       directions that light comes from
 //! ```
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
@@ -25,6 +26,7 @@ mod cache;
 mod estimate;
 mod final_gather;
 pub mod grid;
+mod guide;
 mod hemisphere;
 mod irradiance;
 mod pieces;

@@ -206,7 +206,8 @@ impl View<'_> {
             };
             let found = match (indirect, &self.gather) {
                 (Indirect::Gathered(cached), Some(gather)) => {
-                    self.accurate_irradiance(gather, side, cached[nth], sampler, rays)
+                    let spot = (side, seen.gone);
+                    self.accurate_irradiance(gather, spot, cached[nth], sampler, rays)
                 }
                 (Indirect::OneRay(vertex), _) => {
                     let goes_on = matches!(asker, Asker::Camera);
