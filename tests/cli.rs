@@ -806,6 +806,46 @@ fn a_check_that_does_not_exist_is_a_usage_error_that_names_those_there_are() {
     }
 }
 
+#[test]
+fn the_extremes_are_kept_in_a_file_and_a_page() {
+    let bench = Bench::new(TREE);
+    let line = "validate --extremes --only C-63 --json c.json --page c.html";
+    let shown = bench.succeed(line);
+    let json: serde_json::Value = serde_json::from_slice(&bytes(&bench.path("c.json"))).unwrap();
+    assert_eq!(
+        (&json["failed"], &json["effort"]),
+        (&0.into(), &"short".into())
+    );
+    let cases = json["cases"].as_array().unwrap();
+    assert_eq!((cases.len(), &cases[0]["id"]), (1, &"C-63".into()));
+    assert!(
+        shown.lines().nth(1).unwrap().starts_with("ok    C-63"),
+        "{shown}"
+    );
+    for check in cases[0]["checks"].as_array().unwrap() {
+        assert!(check["ok"] == true && check["seconds"].is_f64(), "{check}");
+        assert!(check["measured"].is_f64() && check["tolerance"].is_f64());
+    }
+    // The page needs nothing from elsewhere.
+    let page = text(&bytes(&bench.path("c.html")));
+    assert!(page.starts_with("<!doctype html>") && page.contains("C-63-zero"));
+    for link in ["http:", "https:", "src=", "url(", "<script"] {
+        assert!(!page.contains(link), "{link}");
+    }
+    // Its own page is replaced, that of another is not.
+    bench.succeed(line);
+    bench.write("notes.html", "<!doctype html>\n<p>mine</p>\n");
+    let other = "validate --extremes --only C-63 --page notes.html";
+    assert!(bench.fail(other, 3).contains("not replaced"));
+    let message = bench.fail("validate --extremes --only C-73", 2);
+    assert!(message.contains("C-1 to C-72"), "{message}");
+    assert!(
+        bench
+            .fail("validate --page c.html", 2)
+            .contains("--extremes")
+    );
+}
+
 /// Photons that cost nothing.
 const FEW: &str = "--global-photons 1000 --caustic-photons 1000";
 

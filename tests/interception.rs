@@ -23,8 +23,8 @@ use understory::integrator::{CancelToken, RenderContext};
 use understory::interpret::Sensor;
 use understory::light::{Environment, Light, Sky};
 use understory::material::Material;
+use understory::math::rng;
 use understory::math::stats::RunningStats;
-use understory::math::{Ray, rng};
 use understory::scene::Scene;
 use understory::scene::description::{
     Group, GroupId, Instance, MaterialId, OrganId, PlacedShape, SceneDescription,
@@ -472,29 +472,6 @@ fn the_books_balance_exactly_on_any_number_of_threads() {
     assert!(off < 1e-9 * one.books.emitted.sum(), "{off}");
 }
 
-/// C-68: where nothing is absorbed all light comes back.
-#[test]
-fn a_canopy_without_absorption_keeps_nothing() {
-    let mut drawn = canopy(300, 0.06, 1.0, 1.0, false, 5);
-    drawn.materials = vec![
-        Material::leaf(Rgb::splat(0.5), Rgb::splat(0.5)),
-        Material::lambert(Rgb::WHITE),
-    ];
-    drawn.groups[0]
-        .shapes
-        .push(placed(Shape::Plane, DAffine3::IDENTITY, 1, 1));
-    drawn.lights = vec![sun(0.5, 0.1)];
-    let bounds = Scene::build(drawn.clone()).unwrap().bounds();
-    let plot = Plot::new(DVec2::ONE, bounds).unwrap();
-    let drawn = drawn.beside_itself(DVec2::ONE, plot.overhang(&bounds));
-    let scene = Scene::build(drawn).unwrap();
-    let found = solve(&scene, 2, Some(plot), 4096);
-    assert!(found.total.hits > 4096);
-    let emitted = found.books.emitted.sum();
-    assert!(found.books.absorbed.sum().abs() < 1e-12 * emitted);
-    assert!((found.books.escaped.sum() / emitted - 1.0).abs() < 1e-9);
-}
-
 /// Light from above meets the front of what looks up and the back of what looks down.
 #[test]
 fn light_is_told_by_the_side_that_it_meets() {
@@ -507,127 +484,6 @@ fn light_is_told_by_the_side_that_it_meets() {
         let received = found.organs[organ].received.map(|power| power.r);
         assert!((received[side] - 1.0).abs() < 0.05, "{organ}: {received:?}");
         assert_eq!(received[1 - side], 0.0, "{organ}");
-    }
-}
-
-/// C-69: what photons bring is what rays traced back from the leaf find, leaf by leaf, from a sky and from a sun.
-#[test]
-fn forward_and_backward_agree() {
-    let (_, shapes) = leaves();
-    let sky = Rgb::splat(1.0);
-    let lamp = sun(0.6, 1.0);
-    let Light::Directional {
-        direction,
-        irradiance,
-        ..
-    } = lamp
-    else {
-        panic!("parallel light")
-    };
-    let mut drawn = world(vec![black(), black(), black()], shapes.clone(), vec![lamp]);
-    drawn.environment.sky = Sky::Uniform(sky);
-    let scene = Scene::build(drawn).unwrap();
-    let found = solve(&scene, 6, None, 200_000);
-    for (i, leaf) in (0_u64..).zip(&shapes) {
-        let Shape::Parallelogram {
-            corner,
-            edge_u,
-            edge_v,
-        } = leaf.shape
-        else {
-            panic!("a rectangle")
-        };
-        let normal = leaf.to_group.transform_vector3(DVec3::Z);
-        let (n, mut seen, mut squares) = (20_000_u64, 0.0, 0.0);
-        for k in 0..n {
-            let u = |of: u64| rng::unit_f64(rng::hash(&[99, i, k, of]));
-            let at = corner + edge_u * u(0) + edge_v * u(1);
-            let (z, angle) = (u(2).sqrt(), 2.0 * PI * u(3));
-            let side = if k % 2 == 0 { normal } else { -normal };
-            let x = side.any_orthonormal_vector();
-            let s = (1.0 - z * z).sqrt();
-            let d = x * (s * angle.cos()) + side.cross(x) * (s * angle.sin()) + side * z;
-            let from = leaf.to_group.transform_point3(at) + side * 1e-9;
-            // Irradiance π L from each side.
-            let of_sky = scene.transmittance(&Ray::new(from, d.normalize())).r * 2.0 * PI;
-            let to_sun = -direction;
-            let lit = normal * normal.dot(to_sun).signum();
-            let from = leaf.to_group.transform_point3(at) + lit * 1e-9;
-            let seen_sun = scene.transmittance(&Ray::new(from, to_sun)).r;
-            let value = of_sky + seen_sun * irradiance.r * lit.dot(to_sun);
-            seen += value;
-            squares += value * value;
-        }
-        let mean = seen / n as f64;
-        let error = ((squares / n as f64 - mean * mean) / n as f64).sqrt();
-        let area = edge_u.cross(edge_v).length() * 3.0;
-        let light = &found.organs[i as usize];
-        assert_close(
-            light.absorbed.sum() / area,
-            mean,
-            error.hypot(light.errors.absorbed / area),
-            &format!("leaf {i}"),
-        );
-    }
-}
-
-/// C-71, C-72: parts of an organ get what the whole gets, wherever the scene stands and however it is turned.
-#[test]
-fn organs_can_be_cut_turned_and_moved() {
-    let (materials, shapes) = leaves();
-    let whole = solve(
-        &outdoors(shapes.clone(), materials.clone(), DAffine3::IDENTITY),
-        7,
-        None,
-        100_000,
-    );
-    let mut cut = shapes.clone();
-    let Shape::Parallelogram {
-        corner,
-        edge_u,
-        edge_v,
-    } = cut[2].shape.clone()
-    else {
-        panic!("a rectangle")
-    };
-    for (k, part) in [(0.0, 2_u32), (0.5, 6)].into_iter().enumerate() {
-        let shape = Shape::Parallelogram {
-            corner: corner + edge_u * part.0,
-            edge_u: edge_u * 0.5,
-            edge_v,
-        };
-        let piece = placed(shape, shapes[2].to_group, 2, part.1);
-        if k == 0 {
-            cut[2] = piece;
-        } else {
-            cut.push(piece);
-        }
-    }
-    let parts = solve(
-        &outdoors(cut, materials.clone(), DAffine3::IDENTITY),
-        7,
-        None,
-        100_000,
-    );
-    let sum = parts.organs[2].absorbed.sum() + parts.organs[6].absorbed.sum();
-    let error = whole.organs[2]
-        .errors
-        .absorbed
-        .hypot(parts.organs[2].errors.absorbed);
-    let error = error.hypot(parts.organs[6].errors.absorbed);
-    assert_close(sum, whole.organs[2].absorbed.sum(), error, "halves");
-
-    let turn = DQuat::from_rotation_z(1.0) * DQuat::from_rotation_x(0.7);
-    let to = DAffine3::from_rotation_translation(turn, DVec3::new(300.0, -20.0, 7.0));
-    let moved = solve(&outdoors(shapes, materials, to), 7, None, 100_000);
-    for (i, (a, b)) in whole.organs.iter().zip(&moved.organs).take(6).enumerate() {
-        let error = a.errors.absorbed.hypot(b.errors.absorbed);
-        assert_close(
-            a.absorbed.sum(),
-            b.absorbed.sum(),
-            error,
-            &format!("turned leaf {i}"),
-        );
     }
 }
 

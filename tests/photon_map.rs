@@ -15,7 +15,7 @@ use understory::color::Rgb;
 use understory::geometry::Shape;
 use understory::integrator::{
     CancelToken, Integrator, Path, PhotonMapping, RadianceEstimator, Radiosity, RayCounts,
-    RenderContext, RenderError,
+    RenderContext,
 };
 use understory::light::{Environment, Light, Sky};
 use understory::material::Material;
@@ -70,134 +70,6 @@ fn mean_over(
     sum / f64::from(n * n)
 }
 
-/// A black lamp box above a white floor: all that the floor has is what a red and a gray wall throw at it.
-fn corner() -> Scene {
-    let wall = |material| {
-        let upright = at(2.0, 0.0, 2.0) * DAffine3::from_rotation_y(-PI / 2.0);
-        (square(2.0), upright, material)
-    };
-    let (shape, place, material) = wall(Material::lambert(gray(0.8)));
-    Room::default()
-        .with(
-            square(2.0),
-            DAffine3::IDENTITY,
-            Material::lambert(gray(0.5)),
-        )
-        .with(shape, place, material)
-        .lit_by(Light::spot(
-            DVec3::new(-1.5, 0.0, 2.0),
-            DVec3::X,
-            understory::math::angle::Angle::deg(20.0),
-            understory::math::angle::Angle::deg(25.0),
-            gray(100.0),
-        ))
-        .build()
-}
-
-/// Irradiance of the floor of [`corner`] at points whose first coordinate lies between two values, as radiance of the floor.
-fn floor_strip(estimator: &dyn RadianceEstimator, low: f64, high: f64, samples: u32) -> f64 {
-    let from = |u: f64, v: f64| DVec3::new(low + u * (high - low), v * 2.0 - 1.0, 0.0);
-    let n = if samples == 1 { 48 } else { 16 };
-    mean_over(estimator, n, from, DVec3::NEG_Z, samples)
-}
-
-#[test]
-fn c31_mean_light_does_not_depend_on_the_photon_area() {
-    let scene = corner();
-    let light: Vec<f64> = [0.02, 0.04, 0.16, 0.64]
-        .into_iter()
-        .map(|area| {
-            let estimator = prepared(&maps(150_000, 0, Some(area)), &scene);
-            floor_strip(&*estimator, -1.5, 1.5, 1)
-        })
-        .collect();
-    for value in &light {
-        assert!((value / light[1] - 1.0).abs() < 0.02, "{light:?}");
-    }
-    let truth = floor_strip(&*prepared(&Path::default(), &scene), -1.5, 1.5, 64);
-    assert!((light[1] / truth - 1.0).abs() < 0.02, "{light:?} {truth}");
-}
-
-#[test]
-fn c35_edges_and_corners_neither_leak_nor_darken() {
-    let scene = corner();
-    let estimator = prepared(&maps(300_000, 0, Some(0.04)), &scene);
-    let path = prepared(&Path::default(), &scene);
-    // Strips narrower than the kernel (0.11 m) at the free edges and in the middle.
-    for (low, high) in [(-1.99, -1.93), (0.0, 0.1)] {
-        let (found, truth) = (
-            floor_strip(&*estimator, low, high, 1),
-            floor_strip(&*path, low, high, 128),
-        );
-        assert!((found / truth - 1.0).abs() < 0.1, "{low}: {found} {truth}");
-    }
-}
-
-#[test]
-fn c35_faces_that_are_lit_differently_do_not_mix() {
-    // A cube, lit on one side only through a mirror-free room: its dark side stays dark.
-    let cube = Shape::Box {
-        half_x: 0.5,
-        half_y: 0.5,
-        length: 1.0,
-    };
-    let bright = at(3.0, 0.0, 0.5) * DAffine3::from_rotation_y(-PI / 2.0);
-    let lamp = Light::spot(
-        DVec3::new(1.0, 0.0, 2.5),
-        DVec3::new(2.0, 0.0, -2.0).normalize(),
-        understory::math::angle::Angle::deg(8.0),
-        understory::math::angle::Angle::deg(10.0),
-        gray(100.0),
-    );
-    let scene = Room::default()
-        .with(cube, DAffine3::IDENTITY, Material::lambert(gray(0.5)))
-        .with(square(0.8), bright, Material::lambert(gray(0.9)))
-        .lit_by(lamp)
-        .build();
-    let estimator = prepared(&maps(100_000, 0, Some(0.09)), &scene);
-    let face = |x: f64| {
-        let from = move |u: f64, v: f64| DVec3::new(x, u - 0.5, v);
-        mean_over(&*estimator, 12, from, DVec3::X * -x.signum(), 1)
-    };
-    assert!(face(0.5) > 0.1);
-    assert_eq!(face(-0.5), 0.0);
-}
-
-#[test]
-fn c36_a_leaf_smaller_than_the_kernel_has_exactly_its_own_light() {
-    // Under a matt dome that glows indirectly, leaves of 5 cm and a kernel of half a metre: both sides are what the path tracer
-    // says, and do not depend on the kernel at all.
-    let leaf = Material::leaf(gray(0.4), gray(0.3));
-    let scene = Room::default()
-        .with(
-            Shape::Sphere { radius: 1.0 },
-            DAffine3::IDENTITY,
-            Material::lambert(gray(0.7)),
-        )
-        .with(square(0.15), at(0.3, 0.0, 0.0), leaf.clone())
-        .with(square(0.15), at(-0.3, 0.0, 0.05), leaf)
-        .lit_by(Light::spot(
-            DVec3::Z * 0.5,
-            DVec3::Z,
-            understory::math::angle::Angle::deg(30.0),
-            understory::math::angle::Angle::deg(30.0),
-            gray(10.0),
-        ))
-        .build();
-    let of = |method: &dyn Integrator, samples, w: DVec3| {
-        let estimator = prepared(method, &scene);
-        let from = |u: f64, v: f64| DVec3::new(0.16 + 0.28 * u, 0.28 * v - 0.14, 0.0);
-        mean_over(&*estimator, 6, from, w, samples)
-    };
-    for w in [DVec3::Z, DVec3::NEG_Z] {
-        let (one, other) = (maps(100_000, 0, Some(0.5)), maps(100_000, 0, Some(0.9)));
-        let (found, again) = (of(&one, 1, w), of(&other, 1, w));
-        assert!((found / again - 1.0).abs() < 1e-6, "{found} {again}");
-        let truth = of(&Path::default(), 128, w);
-        assert!((found / truth - 1.0).abs() < 0.06, "{w}: {found} {truth}");
-    }
-}
-
 /// Twigs of 4 mm that meet a photon or none, seldom more: their light is right in the mean. Once each photon had a kernel as small as a
 /// twig whose light reached along it as far as other kernels do, and they were ten and more times too bright.
 ///
@@ -250,67 +122,6 @@ fn c36_twigs_are_as_bright_as_they_are_however_few_photons_meet_them() {
             "{area:?}: {found} {truth}"
         );
     }
-}
-
-#[test]
-fn c34_kernels_of_no_and_of_all_size() {
-    let scene = corner();
-    for area in [1e-300, 1e-12, 1e12, 1e300] {
-        let light = floor_strip(
-            &*prepared(&maps(20_000, 0, Some(area)), &scene),
-            -1.0,
-            1.0,
-            1,
-        );
-        assert!(light.is_finite() && light >= 0.0, "{area}: {light}");
-    }
-    let none = floor_strip(
-        &*prepared(&maps(20_000, 0, Some(0.0)), &scene),
-        -1.0,
-        1.0,
-        1,
-    );
-    assert_eq!(none, 0.0);
-}
-
-#[test]
-fn c37_no_photons_leave_direct_light_alone() {
-    let scene = corner();
-    let none = prepared(&maps(0, 0, None), &scene);
-    assert_eq!(floor_strip(&*none, -1.0, 1.0, 1), 0.0);
-    let wall = Ray::new(DVec3::new(0.0, 0.0, 2.0), DVec3::X);
-    let path = Path {
-        max_depth: Some(1),
-        ..Path::default()
-    };
-    let direct = seen(&*prepared(&path, &scene), wall, 4).g;
-    assert!((seen(&*none, wall, 4).g / direct - 1.0).abs() < 1e-9);
-    for n in [1, 2] {
-        let one = prepared(&maps(n, n, None), &scene);
-        assert!(seen(&*one, wall, 4).g.is_finite());
-    }
-}
-
-#[test]
-fn c44_a_closed_room_keeps_its_stored_light_inside() {
-    let room = Room::default()
-        .with(
-            Shape::Sphere { radius: 1.0 },
-            DAffine3::IDENTITY,
-            Material::lambert(gray(0.8)),
-        )
-        .with(
-            square(5.0),
-            at(0.0, 0.0, -1.5),
-            Material::lambert(gray(0.8)),
-        )
-        .lit_by(Light::point(DVec3::new(0.2, 0.0, 0.0), gray(10.0)))
-        .build();
-    let estimator = prepared(&maps(50_000, 0, None), &room);
-    let outside = Ray::new(DVec3::Z * 3.0, DVec3::NEG_Z);
-    let floor = Ray::new(DVec3::new(2.0, 0.0, 3.0), DVec3::NEG_Z);
-    assert_eq!(seen(&*estimator, outside, 4), Rgb::BLACK);
-    assert_eq!(seen(&*estimator, floor, 4), Rgb::BLACK);
 }
 
 #[test]
@@ -463,52 +274,4 @@ fn outdoors_agrees_with_the_path_tracer() {
         let (found, truth) = (of(&*photon, 64), of(&*path, 256));
         assert!((found / truth - 1.0).abs() < 0.1, "{w}: {found} {truth}");
     }
-}
-
-/// C-59.
-#[test]
-fn the_solution_is_the_same_on_any_number_of_threads() {
-    let scene = corner();
-    let ray = |i: i32| {
-        Ray::new(
-            DVec3::new(f64::from(i) * 0.03 - 1.5, 0.1, 1.0),
-            DVec3::NEG_Z,
-        )
-    };
-    let on = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            let estimator = prepared(&maps(20_000, 0, None), &scene);
-            (0..100)
-                .map(|i| seen(&*estimator, ray(i), 1))
-                .collect::<Vec<_>>()
-        })
-    };
-    let one = on(1);
-    assert!(one.iter().any(|light| light.g > 0.0));
-    assert!(one == on(2) && one == on(3));
-}
-
-/// C-65.
-#[test]
-fn too_many_photons_for_the_memory_are_refused() {
-    let scene = corner();
-    let cancel = CancelToken::default();
-    let context = RenderContext {
-        seed: 0,
-        cancel: &cancel,
-        progress: &|_| {},
-    };
-    let method = PhotonMapping {
-        most_stored: 1000,
-        ..maps(50_000, 0, None)
-    };
-    let refused = method.prepare(&scene, &context).err();
-    assert!(matches!(
-        refused,
-        Some(RenderError::TooManyPhotons { most: 1000, .. })
-    ));
 }

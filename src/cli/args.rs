@@ -331,7 +331,8 @@ pub struct TradeArgs {
 /// `validate`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  understory validate\n  understory validate --only sky --seed 7 --json checks.json\n\n\
+    after_help = "Examples:\n  understory validate\n  understory validate --only sky --seed 7 --json checks.json\n  \
+                        understory validate --extremes --json extremes.json --page extremes.html\n\n\
                         Small scenes are looked at by the estimators that make the pictures, and the numbers compared with\n\
                         closed forms: configuration factors, Fresnel's equations, skies, furnaces, lamps.\n\
                         Exit codes: 0 all hold; 1 one differs, as happens to a right program once in a million\n\
@@ -341,9 +342,18 @@ pub struct ValidateArgs {
     /// Make only the checks whose names begin so
     #[arg(long, value_name = "NAME")]
     pub only: Option<String>,
+    /// Make the checks at the extremes instead: huge, tiny, far, degenerate, empty, endless; cases C-1 to C-72
+    #[arg(long)]
+    pub extremes: bool,
+    /// At the extremes, do in full what takes minutes and gigabytes: 1e9 samples, 1e8 photons
+    #[arg(long, requires = "extremes")]
+    pub full: bool,
     /// Write each check with what was found to this file
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
+    /// Write the checks at the extremes as a page for a browser
+    #[arg(long, value_name = "FILE.html", requires = "extremes")]
+    pub page: Option<PathBuf>,
 }
 
 /// `light`

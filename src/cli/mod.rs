@@ -3,6 +3,8 @@
 pub mod args;
 mod cluster;
 mod commands;
+mod extremes;
+mod extremes_page;
 mod flying;
 pub mod outcome;
 mod request;

@@ -1,6 +1,7 @@
 //! `validate`: the light transport against what is known on paper.
 
 use super::args::ValidateArgs;
+use super::extremes;
 use super::shell::Shell;
 use crate::math::functions::log10;
 use crate::pipeline::audience::Audience;
@@ -29,6 +30,9 @@ struct Protocol<'a> {
 
 /// Makes all checks and prints them.
 pub(super) fn validate(shell: &Shell, args: &ValidateArgs) -> Result<(), Failure> {
+    if args.extremes {
+        return extremes::validate(shell, args);
+    }
     let json = args.json.as_deref();
     let json = json
         .map(|json| JsonTarget::new(&shell.world, json, KEYS))
@@ -128,12 +132,12 @@ fn table(findings: &[Finding]) -> String {
 }
 
 /// A number with eight significant digits.
-fn digits(x: f64) -> String {
+pub(super) fn digits(x: f64) -> String {
     significant(x, 8)
 }
 
 /// A number with two significant digits.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     significant(x, 2)
 }
 

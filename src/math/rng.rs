@@ -57,56 +57,6 @@ pub const fn unit_f64_from_u32(bits: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// C-58: among 2²⁰ neighbouring counters none share a number, and bytes are even (χ² of 255 degrees of freedom per place;
-    /// false alarm 1e-6 for all eight).
-    #[test]
-    fn neighbouring_counters_never_meet() {
-        let n = 1_u64 << 20;
-        let mut numbers: Vec<u64> = (0..n).map(|i| hash(&[7, i])).collect();
-        for place in 0..8 {
-            let mut counts = [0_u32; 256];
-            for number in &numbers {
-                counts[(number >> (8 * place) & 255) as usize] += 1;
-            }
-            let expected = n as f64 / 256.0;
-            let chi: f64 = counts
-                .iter()
-                .map(|&count| (f64::from(count) - expected).powi(2) / expected)
-                .sum();
-            let p = crate::math::stats::chi_squared_upper_tail(chi, 255.0);
-            assert!(p > 1e-6 / 8.0, "byte {place}: {p}");
-        }
-        numbers.sort_unstable();
-        assert!(numbers.windows(2).all(|pair| pair[0] != pair[1]));
-    }
-
-    /// C-58.
-    #[test]
-    fn neighbouring_counters_are_uncorrelated() {
-        // Lag-one correlation of uniform numbers from counters that differ by one; standard error 1/√n.
-        let n = 1_u64 << 18;
-        let sample = |i: u64| unit_f64(hash(&[7, i])) - 0.5;
-        let (mut product, mut sum) = (0.0, 0.0);
-        for i in 0..n {
-            product += sample(i) * sample(i + 1) * 12.0;
-            sum += sample(i);
-        }
-        let scale = (n as f64).sqrt();
-        assert!((product / scale).abs() < 5.0, "{}", product / scale);
-        assert!((sum * 12.0_f64.sqrt() / scale).abs() < 5.0);
-    }
-
-    #[test]
-    fn one_flipped_bit_flips_half_of_the_output() {
-        for bit in 0..64 {
-            let flips: u32 = (0..256)
-                .map(|i| (hash(&[i, 3]) ^ hash(&[i ^ (1 << bit), 3])).count_ones())
-                .sum();
-            let mean = f64::from(flips) / 256.0;
-            assert!((mean - 32.0).abs() < 2.0, "bit {bit}: {mean}");
-        }
-    }
-
     #[test]
     fn order_and_number_of_keys_matter() {
         assert_ne!(hash(&[1, 2]), hash(&[2, 1]));

@@ -267,3 +267,64 @@ pub const FIT_FLOORS: [f64; 2] = [1e-3, 0.999];
 
 /// The step of the logarithm of a fitted price at which it is found.
 pub const FIT_STEP: f64 = 1e-12;
+
+/// How different a picture may be whose world is measured in another unit, as a relative mean squared error.
+///
+/// Rays that pass an edge on the other side by rounding change single pixels of few samples. Ten times larger and a light that grows
+/// with the unit in one corner would pass; ten times smaller and one pixel in a hundred thousand may not flip. Used by
+/// [`crate::validation::extremes`].
+pub const SAME_PICTURE_IN_OTHER_UNITS: f64 = 1e-5;
+
+/// The same for a picture whose world lies elsewhere, up to 10⁷ m: there coordinates have nine digits left behind the point.
+///
+/// Ten times larger would hide that single edges move; ten times smaller would refuse right pictures. Used by
+/// [`crate::validation::extremes`].
+pub const SAME_PICTURE_ELSEWHERE: f64 = 1e-6;
+
+/// How much the light of a leaf that is smaller than two kernels may differ between them, relative.
+///
+/// All its photons are summed in the same order by both; powers are kept with 24 bits. Ten times smaller would be met too; a thousand
+/// times larger would hide that the kernel cuts some off. Used by [`crate::validation::extremes`].
+pub const BINNED_LIGHT: f64 = 1e-6;
+
+/// How far form factors that are known on paper may be off, relative, once they were kept as `f32`.
+///
+/// Two roundings of 2⁻²⁴ and a sum of a few. Ten times larger would hide a wrong digit of the quadrature; ten times smaller refuses right
+/// ones. Used by [`crate::validation::extremes`].
+pub const SEVEN_DIGITS: f64 = 3e-7;
+
+/// The same for numbers printed with nine decimals and kept as `f32`, absolute.
+pub const SIX_DIGITS: f64 = 1e-6;
+
+/// How much of what leaves a patch of a closed room may not arrive anywhere: roundings of some hundred factors that are kept as `f32`.
+///
+/// Ten times larger and a crack between two walls of a thousandth of a pixel would pass. Used by [`crate::validation::extremes`].
+pub const WHOLE_ROWS: f64 = 1e-5;
+
+/// How far the power of photons that are aimed at boxes may be off, relative: the boxes are a little wider than what is in them.
+///
+/// Ten times larger would still be far below the noise of any number of photons. Used by [`crate::validation::extremes`].
+pub const AIMED_BOXES: f64 = 1e-7;
+
+/// How far the mean of up to 10⁹ samples of a pixel may be off, relative.
+///
+/// Sums in `f64` are off by less than a millionth of it; sums in `f32` by 2 %, after 10⁷ samples by as much as they round. A thousand times
+/// larger would pass a compensated `f32`. Used by [`crate::validation::extremes`].
+pub const LONG_SUM: f64 = 1e-7;
+
+/// How far probabilities, shares and reflectances that are known on paper may be off: some roundings of 2⁻⁵³.
+///
+/// Ten times smaller would be met by most; a thousand times larger would hide a probability that is not handed out. Used by
+/// [`crate::validation::extremes`].
+pub const EXACT_SHARES: f64 = 1e-12;
+
+/// How far from 1 the reflectance may be so little before the critical angle: it rises with the square root of the angle.
+///
+/// Used by [`crate::validation::extremes`].
+pub const STEEP_FRESNEL: f64 = 1e-4;
+
+/// How much a picture may change that is so many times brighter and then divided by that, relative.
+///
+/// Photons keep their power as `f32` of the mean, patches form factors; both round alike for powers of two. Ten times larger would hide a
+/// threshold in watts. Used by [`crate::validation::extremes`].
+pub const ANY_STRENGTH: f64 = 1e-6;

@@ -234,6 +234,50 @@ impl CsvTarget {
     }
 }
 
+/// A page for a browser to be.
+#[derive(Clone, Debug)]
+pub struct PageTarget {
+    path: PathBuf,
+    mark: &'static str,
+}
+
+impl PageTarget {
+    /// A page at `path`; an earlier one of its kind is known by beginning with `mark`.
+    ///
+    /// # Errors
+    /// If the suffix is not `.html`, files cannot be made there, or something else is there already.
+    pub fn new(world: &dyn World, path: &Path, mark: &'static str) -> Result<Self, Failure> {
+        if path.extension().is_none_or(|suffix| suffix != "html") {
+            return Err(Failure::Usage(format!(
+                "`{}` does not end in `.html`",
+                path.display()
+            )));
+        }
+        let target = Self {
+            path: path.to_owned(),
+            mark,
+        };
+        target.check(world)?;
+        Ok(target)
+    }
+
+    /// Writes the page.
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there before is then untouched.
+    pub fn write(&self, world: &dyn World, text: &str) -> Result<(), Failure> {
+        self.check(world)?;
+        put(world, &self.path, text.as_bytes())
+    }
+
+    fn check(&self, world: &dyn World) -> Result<(), Failure> {
+        may_write(world, &self.path, "an earlier page of this kind", |_| {
+            let head = world.head(&self.path, self.mark.len());
+            head.is_ok_and(|head| head == self.mark.as_bytes())
+        })
+    }
+}
+
 /// A shell script to be.
 #[derive(Clone, Debug)]
 pub struct ScriptTarget {

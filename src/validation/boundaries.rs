@@ -59,7 +59,17 @@ pub(super) fn checks() -> Vec<Check> {
     checks.extend(special_angles());
     checks.extend(bodies());
     checks.extend(lamp_through_pane());
-    checks
+    let case = |id: &str| match id {
+        "glass-index-1" | "body-through-1" | "body-inside-1" => "48",
+        _ if id.starts_with("glass-inside") || id.starts_with("glass-beyond") => "49",
+        _ if id.starts_with("body") => "46",
+        _ => "50",
+    };
+    let with_case = |check: Check| {
+        let case = case(&check.id);
+        check.of_case(case)
+    };
+    checks.into_iter().map(with_case).collect()
 }
 
 /// A row of the table.

@@ -2,7 +2,7 @@
 
 use super::probe::Experiment;
 use super::verdict::{Family, Verdict};
-use crate::integrator::CancelToken;
+use crate::integrator::{CancelToken, RenderContext};
 use crate::math::rng;
 use crate::scene::SceneError;
 use serde::Serialize;
@@ -18,10 +18,46 @@ pub struct Check {
     pub what: String,
     /// The number on paper.
     pub expected: f64,
+    /// The case of the list of tests at the [extremes](super::extremes) that it belongs to, such as `17`.
+    pub case: Option<&'static str>,
     trial: Trial,
 }
 
+/// What a measurement may ask for.
+pub(super) struct Setting<'a> {
+    /// Decides all random choices.
+    pub(super) seed: u64,
+    /// To be asked often by what takes long; what is returned then counts for nothing.
+    pub(super) cancel: &'a CancelToken,
+}
+
+impl<'a> Setting<'a> {
+    /// What methods of light transport are given.
+    pub(super) fn context(&self) -> RenderContext<'a> {
+        RenderContext {
+            seed: self.seed,
+            cancel: self.cancel,
+            progress: &|_| {},
+        }
+    }
+}
+
+/// Why there is no number.
+#[derive(Debug)]
+pub(super) struct Trouble(pub(super) String);
+
+impl<E: std::error::Error> From<E> for Trouble {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// How a number is found that may be off by so much.
+type Measure = Box<dyn Fn(&Setting<'_>) -> Result<f64, Trouble> + Send + Sync>;
+
 enum Trial {
+    /// A number and how far it may be off, as a number of the same kind.
+    Within { allowed: f64, measure: Measure },
     /// Nothing is left to chance.
     Exact {
         /// Largest relative difference.
@@ -72,6 +108,7 @@ impl Check {
             id: name.0.into(),
             what: name.1.into(),
             expected,
+            case: None,
             trial: Trial::Exact { tolerance, measure },
         }
     }
@@ -88,7 +125,33 @@ impl Check {
             id: name.0.into(),
             what: name.1.into(),
             expected,
+            case: None,
             trial: Trial::Mean { fault, experiment },
+        }
+    }
+
+    /// A number that is off by `allowed` at most, of whatever kind; an error or a count of faults is expected to be 0.
+    pub(super) fn within(
+        name: (impl Into<String>, impl Into<String>),
+        expected: f64,
+        allowed: f64,
+        measure: impl Fn(&Setting<'_>) -> Result<f64, Trouble> + Send + Sync + 'static,
+    ) -> Self {
+        let measure = Box::new(measure);
+        Self {
+            id: name.0.into(),
+            what: name.1.into(),
+            expected,
+            case: None,
+            trial: Trial::Within { allowed, measure },
+        }
+    }
+
+    /// As part of a case of the list of tests at the extremes.
+    pub(super) fn of_case(self, case: &'static str) -> Self {
+        Self {
+            case: Some(case),
+            ..self
         }
     }
 
@@ -105,24 +168,37 @@ impl Check {
             return None;
         }
         let finding = match &self.trial {
-            Trial::Exact { tolerance, measure } => measure().map(|measured| {
-                let tolerance = tolerance * self.expected.abs();
-                Finding {
+            Trial::Within { allowed, measure } => {
+                let setting = Setting { seed, cancel };
+                measure(&setting).map(|measured| Finding {
                     measured: Some(measured),
-                    tolerance,
+                    tolerance: *allowed,
                     observations: 1,
-                    ok: (measured - self.expected).abs() <= tolerance,
+                    ok: (measured - self.expected).abs() <= *allowed,
                     ..self.nothing()
-                }
-            }),
+                })
+            }
+            Trial::Exact { tolerance, measure } => {
+                measure().map_err(Trouble::from).map(|measured| {
+                    let tolerance = tolerance * self.expected.abs();
+                    Finding {
+                        measured: Some(measured),
+                        tolerance,
+                        observations: 1,
+                        ok: (measured - self.expected).abs() <= tolerance,
+                        ..self.nothing()
+                    }
+                })
+            }
             Trial::Mean { fault, experiment } => experiment()
+                .map_err(Trouble::from)
                 .map(|experiment| self.observe(&experiment, *fault, seed, family, cancel)),
         };
         if cancel.is_cancelled() {
             return None;
         }
         Some(finding.unwrap_or_else(|error| Finding {
-            reason: Some(error.to_string()),
+            reason: Some(error.0),
             ..self.nothing()
         }))
     }

@@ -83,11 +83,13 @@ fn tiles(material: &Material) -> Room {
 pub(super) fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
     for row in rows(ENCLOSURE) {
-        checks.extend(furnace(&row));
-        checks.extend(lamp_in_a_cube(&row));
+        let furnaces = furnace(&row).into_iter();
+        checks.extend(furnaces.map(|check| check.of_case("17")));
+        checks.extend(lamp_in_a_cube(&row).map(|check| check.of_case("51")));
     }
     checks.extend(ways());
-    checks.extend(integrating_spheres());
+    let spheres = integrating_spheres().into_iter();
+    checks.extend(spheres.map(|check| check.of_case("51")));
     checks.extend(stacks());
     checks
 }
@@ -210,7 +212,7 @@ fn ways() -> Vec<Check> {
             let what = format!(
                 "radiance in a closed {room}, rho 0.7, 12 reflections, light by {way}, roulette after {roulette}"
             );
-            checks.push(Check::mean((id, what), series, FAULT, move || {
+            let check = Check::mean((id, what), series, FAULT, move || {
                 let path = Path {
                     max_depth: Some(depth.unsigned_abs()),
                     strategies,
@@ -218,7 +220,10 @@ fn ways() -> Vec<Check> {
                     ..Path::default()
                 };
                 Ok(Experiment::new(furnace.room(rho).scene()?, all_round()).by(path))
-            }));
+            });
+            // What is about roulette, and what is about ways of finding light.
+            let case = if after == Some(4) { "55" } else { "56" };
+            checks.push(check.of_case(case));
         }
     }
     checks

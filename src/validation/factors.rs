@@ -229,6 +229,7 @@ fn both_ways(id: &str, what: &str, expected: f64, arrangement: &Arrangement) -> 
 pub(super) fn checks() -> Vec<Check> {
     let mut checks = Vec::new();
     for (nth, row) in rows(TABLE).enumerate() {
+        let first = checks.len();
         let (name, list) = (row[0], row.get(1).copied().unwrap_or_default());
         let what = format!("factor, {name}: {list}");
         let id = format!("factor-{:02}", nth + 1);
@@ -251,10 +252,31 @@ pub(super) fn checks() -> Vec<Check> {
                 move || mesh.clone().experiment(Strategies::LightsOnly, 64),
             ));
         }
+        let case = case_of(name);
+        checks[first..]
+            .iter_mut()
+            .for_each(|check| check.case = case);
     }
-    checks.extend(slanted_spots());
-    checks.extend(inside_a_ball());
+    let in_case =
+        |checks: Vec<Check>, case| checks.into_iter().map(move |check| check.of_case(case));
+    checks.extend(in_case(slanted_spots(), "6"));
+    checks.extend(in_case(inside_a_ball(), "7"));
     checks
+}
+
+/// Which case of the list of tests a row of the table belongs to.
+fn case_of(name: &str) -> Option<&'static str> {
+    let cases = [
+        ("C-11 ", "1"),
+        ("C-14 ", "2"),
+        ("C-41 ", "3"),
+        ("dA facing sphere", "6"),
+        ("dA ", "5"),
+    ];
+    let found = cases
+        .iter()
+        .find(|(beginning, _)| name.starts_with(beginning));
+    found.map(|(_, case)| *case)
 }
 
 /// The arrangement with its shining parallelogram as a mesh.

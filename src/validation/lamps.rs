@@ -49,6 +49,9 @@ pub(super) fn checks() -> Vec<Check> {
     checks.extend(suns());
     checks.extend(veils());
     checks
+        .into_iter()
+        .map(|check| check.of_case("52"))
+        .collect()
 }
 
 fn points() -> Vec<Check> {

@@ -7,9 +7,11 @@
 //! check       a check and what came of it      verdict     when a mean agrees with the truth
 //! probe       looking at a small scene         room        building one
 //! table       the published numbers            tables/     their files
+//! worlds      what rays are tried in
 //! factors     configuration factors            lamps       sources without and with extent
 //! skies       sky, sun, panorama               boundaries  glass
 //! enclosures  closed rooms, stacks of leaves   surfaces    white furnaces
+//! extremes    what must hold at the ends of all scales
 //! ```
 //!
 //! # What a figure means
@@ -20,6 +22,7 @@
 mod boundaries;
 mod check;
 mod enclosures;
+pub mod extremes;
 mod factors;
 mod lamps;
 pub mod probe;
@@ -28,6 +31,7 @@ mod skies;
 mod surfaces;
 mod table;
 pub mod verdict;
+pub mod worlds;
 
 pub use check::{Check, Finding};
 

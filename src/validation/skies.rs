@@ -93,6 +93,9 @@ pub(super) fn checks() -> Vec<Check> {
     checks.extend(clear());
     checks.extend(panoramas());
     checks
+        .into_iter()
+        .map(|check| check.of_case("70"))
+        .collect()
 }
 
 /// A standing wall on black ground sees half of what lying ground sees.

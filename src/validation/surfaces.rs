@@ -83,6 +83,9 @@ pub(super) fn checks() -> Vec<Check> {
     }
     checks.extend(lossy());
     checks
+        .into_iter()
+        .map(|check| check.of_case("46"))
+        .collect()
 }
 
 /// Leaves in all directions round the origin.

@@ -3,83 +3,14 @@
 use crate::instances::forest;
 use crate::shapes::inward;
 use crate::worlds::{Random, build, describe, instance, mesh, placed, soup, try_build};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
-use understory::geometry::{Shape, TriangleMesh};
+use glam::{DAffine3, DQuat, DVec3};
+use understory::geometry::Shape;
 use understory::material::Material;
 use understory::math::Ray;
 use understory::scene::description::{
     Group, GroupId, MaterialId, OrganId, PlacedShape, SceneDescription,
 };
 use understory::scene::{Problem, Scene, SceneError};
-
-fn problem(shape: Shape, to_group: DAffine3) -> Option<(u32, Problem)> {
-    let good = placed(Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, 0);
-    match try_build(vec![good, placed(shape, to_group, 42)]) {
-        Ok(_) => None,
-        Err(SceneError::Organ { organ, problem }) => Some((organ.0, problem)),
-        Err(other) => panic!("{other}"),
-    }
-}
-
-/// C-27; C-30: singular maps.
-#[test]
-fn impossible_numbers_are_refused_with_the_organ() {
-    let vertex = |x: f64| mesh(soup(&[[DVec3::new(x, 0.0, 0.0), DVec3::Y, DVec3::Z]]));
-    let ball = || Shape::Sphere { radius: 1.0 };
-    let not_finite = Some((42, Problem::NotFinite));
-    assert_eq!(problem(vertex(f64::NAN), DAffine3::IDENTITY), not_finite);
-    assert_eq!(
-        problem(vertex(f64::INFINITY), DAffine3::IDENTITY),
-        not_finite
-    );
-    assert_eq!(
-        problem(Shape::Sphere { radius: f64::NAN }, DAffine3::IDENTITY),
-        not_finite
-    );
-    assert_eq!(
-        problem(ball(), DAffine3::from_translation(DVec3::X * f64::NAN)),
-        not_finite
-    );
-    let too_large = Some((42, Problem::TooLarge { limit: 1e15 }));
-    assert_eq!(problem(vertex(1e30), DAffine3::IDENTITY), too_large);
-    assert_eq!(
-        problem(ball(), DAffine3::from_translation(DVec3::X * 1e30)),
-        too_large
-    );
-    let singular = Some((42, Problem::Singular));
-    assert_eq!(
-        problem(ball(), DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))),
-        singular
-    );
-    assert_eq!(problem(ball(), DAffine3::from_scale(DVec3::ZERO)), singular);
-    let flat = DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::X + DVec3::Y));
-    assert_eq!(problem(ball(), flat), singular);
-    let negative = Problem::Negative {
-        size: "radius",
-        value: -1.0,
-    };
-    assert_eq!(
-        problem(Shape::Disk { radius: -1.0 }, DAffine3::IDENTITY),
-        Some((42, negative))
-    );
-    let no_corner = TriangleMesh {
-        positions: vec![DVec3::ZERO; 3],
-        triangles: vec![[0, 1, 2], [0, 1, 3]],
-        ..TriangleMesh::default()
-    };
-    assert_eq!(
-        problem(mesh(no_corner), DAffine3::IDENTITY),
-        Some((42, Problem::NoCorner(1)))
-    );
-    // Fine: tiny, huge, mirrored and very uneven.
-    for scale in [
-        DVec3::splat(1e-9),
-        DVec3::splat(1e9),
-        DVec3::new(1e-6, 1e6, -1.0),
-    ] {
-        assert_eq!(problem(ball(), DAffine3::from_scale(scale)), None);
-    }
-}
 
 #[test]
 fn impossible_groups_are_refused() {

@@ -1,11 +1,11 @@
 //! What rays find of single shapes and planes, and of many in one place.
 
-use crate::worlds::{Random, build, describe, icosphere, instance, mesh, placed, soup};
+use crate::worlds::{Random, build, describe, icosphere, instance, mesh, placed};
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;
-use understory::math::{PrimitiveId, Ray};
+use understory::math::Ray;
 use understory::scene::description::{Group, OrganId, SceneDescription};
 use understory::scene::{Hit, Scene};
 
@@ -187,90 +187,6 @@ fn parallel_rays_count_the_projected_area() {
     }
 }
 
-/// C-28: directions with ±0.
-#[test]
-fn axis_parallel_rays_with_signed_zeros_hit_everything_and_stay_finite() {
-    for shape in shapes() {
-        // Placed so that the box of the group has faces exactly in the planes of the rays, too.
-        for offset in [0.0, 1.0, 1e5] {
-            let moved = DAffine3::from_translation(DVec3::splat(offset));
-            let scene = build(vec![placed(shape.clone(), moved, 0)]);
-            for zeros in [[0.0, 0.0], [-0.0, 0.0], [0.0, -0.0], [-0.0, -0.0]] {
-                for distance in [3.0, 1e7] {
-                    let start = DVec3::new(0.1, 0.1, distance) + DVec3::splat(offset);
-                    let ray = Ray::new(start, DVec3::new(zeros[0], zeros[1], -1.0));
-                    // An open funnel is seen through its hole from above: its wall is hit further down or not at all.
-                    let Some(hit) = scene.closest(&ray) else {
-                        assert!(matches!(
-                            shape,
-                            Shape::Frustum {
-                                base_cap: false,
-                                ..
-                            }
-                        ));
-                        continue;
-                    };
-                    assert!(
-                        hit.t > distance - 2.0 && hit.t < distance + 1.0,
-                        "{shape:?} {hit:?}"
-                    );
-                    assert!(scene.surface(&ray, &hit).position.is_finite());
-                }
-            }
-        }
-    }
-    // A grid whose corners and edges lie exactly under the rays.
-    let corner = |x: i32, y: i32| DVec3::new(f64::from(x), f64::from(y), 0.0);
-    let mut triangles = Vec::new();
-    for x in -4..4 {
-        for y in -4..4 {
-            triangles.push([corner(x, y), corner(x + 1, y), corner(x + 1, y + 1)]);
-            triangles.push([corner(x, y), corner(x + 1, y + 1), corner(x, y + 1)]);
-        }
-    }
-    let scene = build(vec![placed(mesh(soup(&triangles)), DAffine3::IDENTITY, 0)]);
-    for x in -8..=8 {
-        for y in -8..=8 {
-            let start = DVec3::new(f64::from(x) / 2.0, f64::from(y) / 2.0, 1e6);
-            assert_eq!(
-                scene
-                    .closest(&Ray::new(start, DVec3::NEG_Z))
-                    .map(|hit| hit.t),
-                Some(1e6)
-            );
-        }
-    }
-}
-
-/// C-28: grazing rays.
-#[test]
-fn grazing_rays_are_finite_and_a_plane_is_not_met_from_within() {
-    let shapes = vec![
-        placed(Shape::Plane, DAffine3::IDENTITY, 0),
-        placed(
-            Shape::Sphere { radius: 1.0 },
-            DAffine3::from_translation(DVec3::Z * 5.0),
-            1,
-        ),
-    ];
-    let scene = build(shapes);
-    for k in 0..20 {
-        let tilt = if k == 0 { 0.0 } else { 10.0_f64.powi(-k) };
-        for sign in [1.0, -1.0] {
-            let ray = Ray::new(
-                DVec3::Z * 1e-3,
-                DVec3::new(1.0, 0.0, tilt * sign).normalize(),
-            );
-            match scene.closest(&ray) {
-                Some(hit) => assert!(hit.t.is_finite() && sign < 0.0 && tilt > 0.0),
-                None => assert!(sign > 0.0 || tilt == 0.0),
-            }
-        }
-    }
-    let within = Ray::new(DVec3::ZERO, DVec3::X);
-    assert_eq!(scene.closest(&within), None);
-}
-
 #[test]
 fn a_plane_is_seen_from_both_sides_wherever_it_is_put() {
     let mut random = Random(4);
@@ -304,115 +220,9 @@ fn a_plane_is_seen_from_both_sides_wherever_it_is_put() {
     }
 }
 
-/// C-25.
-#[test]
-fn thin_layers_are_seen_in_order() {
-    for gap in [1e-5, 1e-7] {
-        let layers = (0..20).map(|k| {
-            let square = Shape::Parallelogram {
-                corner: DVec3::new(-5.0, -5.0, -gap * f64::from(k)),
-                edge_u: DVec3::X * 10.0,
-                edge_v: DVec3::Y * 10.0,
-            };
-            placed(square, DAffine3::IDENTITY, k as u32)
-        });
-        let scene = build(layers.collect());
-        let mut random = Random(2);
-        for _ in 0..200 {
-            let start = DVec3::new(0.0, 0.0, 100.0) + random.in_cube();
-            let target = random.in_cube() * DVec3::new(4.0, 4.0, 0.0);
-            let mut ray = Ray::new(start, (target - start).normalize());
-            for k in 0..20 {
-                let point = scene.surface(&ray, &scene.closest(&ray).unwrap());
-                assert_eq!(point.organ.0, k);
-                ray = point.spawn_ray(ray.direction);
-            }
-            assert_eq!(scene.closest(&ray), None);
-        }
-    }
-}
-
-/// C-26, C-29: each of what coincides is hit once, in the order of numbers.
-#[test]
-fn coincident_surfaces_are_hit_in_the_order_of_their_numbers_each_once() {
-    let square = [DVec3::NEG_ONE, DVec3::X * 3.0, DVec3::Y * 3.0];
-    let scene = build(vec![placed(
-        mesh(soup(&[square; 100])),
-        DAffine3::IDENTITY,
-        0,
-    )]);
-    let ray = Ray::new(DVec3::new(0.1, 0.1, 5.0), DVec3::NEG_Z);
-    let found = all_along(&scene, &ray);
-    assert!(
-        (0..100)
-            .map(PrimitiveId)
-            .eq(found.iter().map(|hit| hit.primitive))
-    );
-
-    // The same through instances, on a plane and from far away: what rounds differently still comes once each, in order.
-    let leaf = Shape::Parallelogram {
-        corner: DVec3::NEG_ONE * DVec3::new(1.0, 1.0, 0.0),
-        edge_u: DVec3::X * 3.0,
-        edge_v: DVec3::Y * 3.0,
-    };
-    let leaves = Group {
-        shapes: (0..20)
-            .map(|k| placed(leaf.clone(), DAffine3::IDENTITY, k))
-            .collect(),
-        instances: vec![],
-    };
-    let turned = |k: u32| instance(0, DAffine3::from_rotation_z(0.1 * f64::from(k)), k);
-    let stand = Group {
-        shapes: vec![placed(Shape::Plane, DAffine3::IDENTITY, 20)],
-        instances: (0..10).map(turned).collect(),
-    };
-    let scene = Scene::build(describe(vec![leaves, stand])).unwrap();
-    for start in [1.0, 1e3, 1e9] {
-        let slanted = DVec3::new(0.1, 0.2, -1.0).normalize();
-        let found = all_along(&scene, &Ray::new(slanted * -start, slanted));
-        let mut primitives: Vec<_> = found.iter().map(|hit| hit.primitive).collect();
-        primitives.sort_unstable();
-        primitives.dedup();
-        assert_eq!((found.len(), primitives.len()), (201, 201));
-        assert!(found.is_sorted_by_key(|hit| hit.t));
-    }
-}
-
 /// All that lies along a ray, one after the other.
 pub(crate) fn all_along(scene: &Scene, ray: &Ray) -> Vec<Hit> {
     std::iter::successors(scene.closest(ray), |hit| scene.closest_after(ray, hit)).collect()
-}
-
-/// C-26.
-#[test]
-fn degenerate_triangles_and_needles_do_no_harm() {
-    let needle = [DVec3::ZERO, DVec3::X * 1e3, DVec3::new(1e3, 1e-3, 0.0)];
-    let corners = [
-        [DVec3::ZERO; 3],
-        [DVec3::ZERO, DVec3::X, DVec3::X * 2.0],
-        [DVec3::ONE, DVec3::ONE, DVec3::ZERO],
-        needle,
-    ];
-    let scene = build(vec![placed(mesh(soup(&corners)), DAffine3::IDENTITY, 0)]);
-    let target = (needle[0] + needle[1] + needle[2]) / 3.0;
-    let ray = Ray::new(
-        target + DVec3::new(0.0, 0.3, 50.0),
-        DVec3::new(0.0, -0.3, -50.0).normalize(),
-    );
-    let hit = scene.closest(&ray).unwrap();
-    assert_eq!(hit.primitive, PrimitiveId(3));
-    assert!(
-        scene
-            .surface(&ray, &hit)
-            .normal_g
-            .abs_diff_eq(DVec3::Z, 1e-12)
-    );
-    let only_degenerate = build(vec![placed(
-        mesh(soup(&corners[..3])),
-        DAffine3::IDENTITY,
-        0,
-    )]);
-    assert_eq!(only_degenerate.closest(&ray), None);
 }
 
 /// C-54.

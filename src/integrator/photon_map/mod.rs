@@ -18,6 +18,7 @@
 //! hemisphere  irradiance and its gradients by rays  cache       gathered irradiance, kept for all cameras
 //! final_gather  indirect light by rays instead of from the map
 //! guide       directions that light comes from
+//! trials      estimates from photons laid out by hand
 //! ```
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
@@ -35,6 +36,7 @@ mod radius;
 mod solution;
 mod spots;
 mod stored;
+pub(crate) mod trials;
 mod view;
 
 use super::carrier::Carrier;

@@ -139,7 +139,7 @@ impl<'s> Progressive<'s> {
 }
 
 /// The radius of kernels in a pass, counted from 1, in those of the first pass.
-fn shrunk(pass: u32) -> f64 {
+pub(crate) fn shrunk(pass: u32) -> f64 {
     let pass = pass.max(1);
     let power = 1 << pass.ilog2();
     let half_more = power + power / 2;
@@ -155,82 +155,7 @@ fn shrunk(pass: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Shape;
-    use crate::material::Material;
-    use crate::math::functions::{cos, ln};
-    use crate::math::rng;
-    use crate::scene::Scene;
-    use crate::validation::room::{Room, square};
-    use glam::{DAffine3, DVec3};
-    use std::f64::consts::{PI, TAU};
-
-    /// Half the edge of a floor, metres, and photons that a pass sends there.
-    const HALF: f64 = 0.3;
-    const SENT: u64 = 1000;
-
-    fn floor() -> Scene {
-        let shape: Shape = square(2.0);
-        let room = Room::default().with(shape, DAffine3::IDENTITY, Material::default());
-        room.scene().unwrap()
-    }
-
-    /// Light in stripes, W/m².
-    fn stripes(x: f64) -> f64 {
-        1.0 + 0.8 * cos(TAU * x / HALF)
-    }
-
-    /// Photons of a pass, of `n_passes`, that together are `light`.
-    fn photons(light: impl Fn(f64) -> f64, pass: u64, n_passes: u32) -> Vec<Stored> {
-        let side = 3.0 * HALF;
-        let power = 2.0 * side * side / (SENT as f64 * f64::from(n_passes));
-        let photon = |i: u64| {
-            let u = |k| rng::unit_f64(rng::hash(&[pass, i, k]));
-            let (x, y) = ((u(0) - 0.5) * side, (u(1) - 0.5) * side);
-            let is_there = u(2) * 2.0 < light(x);
-            is_there.then(|| Stored::at(DVec3::new(x, y, 0.0), DVec3::Z, power))
-        };
-        (0..SENT).filter_map(photon).collect()
-    }
-
-    /// Mean squared error, W²/m⁴, away from the edges.
-    fn squared_error(scene: &Scene, n_passes: u32, seed: u64) -> f64 {
-        let world = World {
-            scene,
-            center: DVec3::ZERO,
-        };
-        let area = PI * 0.12 * 0.12;
-        let of = |pass: u32| photons(stripes, seed << 32 | u64::from(pass), n_passes);
-        let mut light = Progressive::begin(world, of(0), Some(area), n_passes).unwrap();
-        for pass in 1..n_passes {
-            light.add(pass + 1, of(pass));
-        }
-        let map = light.finish();
-        let samples = map.layers.iter().flat_map(Layer::samples);
-        let errors = samples.filter_map(|sample| {
-            let (position, _, irradiance, ..) = sample.parts();
-            let inside = position.abs().max_element() < HALF as f32;
-            let error = f64::from(irradiance.y) - stripes(f64::from(position.x));
-            inside.then_some(error * error)
-        });
-        let errors: Vec<f64> = errors.collect();
-        errors.iter().sum::<f64>() / errors.len() as f64
-    }
-
-    #[test]
-    fn c41_squared_error_falls_with_the_power_of_two_thirds_of_the_passes() {
-        // The mean over samples and two sets of photons scatters by 7 % for each number of passes, so the slope by 0.03: it leaves
-        // 0.1 once in a thousand seeds. A kernel that does not shrink has slope 0 in the end, one that shrinks too fast -1/3.
-        let scene = floor();
-        let logarithms: Vec<(f64, f64)> = [4, 16, 64]
-            .into_iter()
-            .map(|n| {
-                let errors = (0..2).map(|seed| squared_error(&scene, n, seed));
-                (ln(f64::from(n)), ln(errors.sum::<f64>() / 2.0))
-            })
-            .collect();
-        let slope = (logarithms[2].1 - logarithms[0].1) / (logarithms[2].0 - logarithms[0].0);
-        assert!((slope + 2.0 / 3.0).abs() < 0.1, "{slope}: {logarithms:?}");
-    }
+    use crate::math::functions::ln;
 
     #[test]
     fn c41_kernels_shrink_for_ever_as_the_theory_has_it() {

@@ -68,8 +68,7 @@ impl Stored {
         }
     }
 
-    /// A photon for tests, on a large surface.
-    #[cfg(test)]
+    /// A photon on a large surface, relative to whose middle everything is: for trials.
     pub(super) fn at(position: DVec3, normal: DVec3, power: f64) -> Self {
         Self {
             position: position.as_vec3(),

@@ -20,6 +20,7 @@
 //! kept      as bytes                      solution    what is kept
 //! insides   where no light is
 //! painted   as a mesh with colours        analytic    on paper where that holds
+//! laid      all of it, laid open for trials
 //! ```
 //! Its errors are the size of patches, and noise of rays that is the same in every view.
 
@@ -28,6 +29,7 @@ mod gather;
 mod hemicube;
 pub(in crate::integrator) mod insides;
 mod kept;
+pub(crate) mod laid;
 mod mesh;
 mod painted;
 mod polygon;

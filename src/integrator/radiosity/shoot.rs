@@ -23,7 +23,6 @@ pub(super) struct Shots<'a> {
 
 /// Solves until less than the part `tolerance` of all light is left to shoot; `go_on` is told that part after each salvo and says
 /// whether to go on. What is left then is spread evenly over all patches.
-#[cfg(test)]
 pub(super) fn solve(
     patches: &[Patch],
     shots: &Shots<'_>,
