@@ -24,7 +24,7 @@ use crate::options::{Options, Origin};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// The file beside the frames.
 const FILE: &str = "chosen.toml";
@@ -214,7 +214,7 @@ struct Measured {
 /// What was chosen for the film with this key.
 fn read(
     world: &dyn World,
-    path: &PathBuf,
+    path: &Path,
     key: &str,
 ) -> Result<Option<Vec<(String, String)>>, Failure> {
     if world.entry(path) != Entry::File {
@@ -231,7 +231,7 @@ fn read(
 }
 
 /// Keeps what was chosen.
-fn write(world: &dyn World, path: &PathBuf, key: &str, options: &Options) -> Result<(), Failure> {
+fn write(world: &dyn World, path: &Path, key: &str, options: &Options) -> Result<(), Failure> {
     let mut text = format!(
         "{HEAD}settings that were chosen for all frames of this film. Without this file they are chosen anew.\n\
          film = \"{key}\"\n\n[chosen]\n"

@@ -92,7 +92,7 @@ impl Making<'_> {
         match wish {
             None => taking.as_told(),
             Some(Wish::Seconds(seconds)) => taking.in_time(seconds),
-            Some(Wish::Error(error)) => taking.to_error(error),
+            Some(Wish::Error(error)) => taking.reach_error(error),
         }
     }
 }
@@ -212,7 +212,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
     }
 
     /// With what reaches this error soonest.
-    fn to_error(&mut self, wanted: f64) -> Result<Taken, Failure> {
+    fn reach_error(&mut self, wanted: f64) -> Result<Taken, Failure> {
         let chooser = Chooser::new(&self.run.options, Wish::Error(wanted));
         let is_judged = Viewing::is_judged(self.sight.scene);
         let (pilot, mut offer) = self.offer_for_error(&chooser)?;
