@@ -14,13 +14,15 @@ use crate::scene::Scene;
 
 /// Samples of each pixel to begin with, half of them for each estimate.
 const FIRST_SAMPLES: u32 = 2;
+/// Samples of each pixel at least, for a wanted error, however small the picture is.
+const FEWEST: f64 = 64.0;
 /// Samples of each pixel at most, as in the most careful check of a picture.
 const MOST_SAMPLES: u32 = 4096;
 /// Samples that a method takes of each pixel, and those of them that tell what the view costs once.
 const SAMPLES: u32 = 16;
 const COLD_SAMPLES: u32 = 2;
 /// The squared error of another method is to be known to this part of the squared error that is wanted.
-const PRECISION: f64 = 0.3;
+const PRECISION: f64 = 0.15;
 /// Part of the wanted time for which the truth is sampled.
 const PART_OF_TIME: f64 = 0.03;
 /// Part of the samples of a whole path-traced picture that its pilot takes at most.
@@ -77,7 +79,7 @@ impl<'s> Pilot<'s> {
                 Wish::Error(error) => {
                     let wanted = noise / (PRECISION * error * error * n_spots.sqrt());
                     let whole = noise / (error * error) * n_pixels / n_spots;
-                    f64::from(samples) >= (2.0 * wanted).min(PART_OF_SAMPLES * whole).max(16.0)
+                    f64::from(samples) >= (2.0 * wanted).min(PART_OF_SAMPLES * whole).max(FEWEST)
                 }
             };
             if is_enough || samples >= MOST_SAMPLES {
