@@ -47,7 +47,7 @@ const ROWS: [Row; 15] = [
     (
         "58",
         "C-58-bytes",
-        "the same: eight places of bytes by chi squared, those less likely than 1e-6 / 8",
+        "the same: eight places of bytes by chi squared, those less likely than 10^-6 / 8",
         (0.0, 0.0),
         |setting| Ok(uneven_bytes(setting.seed)),
     ),
@@ -79,7 +79,7 @@ const ROWS: [Row; 15] = [
     (
         "58",
         "C-58-pairs",
-        "pairs of neighbours in 64 × 64 cells by chi squared: how much less likely than 1e-6 (0: not)",
+        "pairs of neighbours in 64 × 64 cells by chi squared: how much less likely than 10^-6 (0: not)",
         (0.0, 0.0),
         |setting| Ok(uneven_pairs(setting.seed)),
     ),
@@ -93,7 +93,7 @@ const ROWS: [Row; 15] = [
     (
         "62",
         "C-62-film",
-        "means of 1000 samples of 1e30 and of 1e-30 in one pixel: largest relative error",
+        "means of 1000 samples of 1e30 and of 10^-30 in one pixel: largest relative error",
         (0.0, EXACT_SHARES),
         |_| Ok(huge_and_tiny()),
     ),
@@ -114,7 +114,7 @@ const ROWS: [Row; 15] = [
     (
         "63",
         "C-63-sums",
-        "weights {3}, {1 0 2}, {1e-30 1e30 1}, ten alike, {1e308 1e308 1e308}, {5e-324 5e-324}: probabilities, sum less 1 and share less weight",
+        "weights {3}, {1 0 2}, {10^-30 1e30 1}, ten alike, {1e308 1e308 1e308}, the two least: probabilities, sum less 1 and share less weight",
         (0.0, EXACT_SHARES),
         |_| shares(),
     ),
@@ -142,7 +142,7 @@ const ROWS: [Row; 15] = [
     (
         "49",
         "C-49-continuous",
-        "the same, 1e-12 radians before it: no step",
+        "the same, 10^-12 radians before it: no step",
         (1.0, STEEP_FRESNEL),
         |_| Ok(dielectric(cos(asin(1.0 / 1.5) - 1.0 / 1e12), 1.0 / 1.5).reflectance),
     ),

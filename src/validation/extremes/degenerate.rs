@@ -28,7 +28,7 @@ pub(super) fn checks() -> Vec<Check> {
         Check::within(
             (
                 "C-28-floor",
-                "a lit floor seen at elevations of 1e-1 to 1e-8: largest relative difference from what is seen from above",
+                "a lit floor seen at elevations of 10^-1 to 10^-8: largest relative difference from what is seen from above",
             ),
             0.0,
             crate::math::tolerance::CLOSED_FORM,
@@ -43,7 +43,7 @@ const COUNTS: [Counted; 10] = [
     (
         "25",
         "C-25-layers",
-        "20 layers 1e-5, 1e-6 and 1e-7 m apart, 200 slanted rays each through all of them: layers missed or out of order",
+        "20 layers 10^-5, 10^-6 and 10^-7 m apart, 200 slanted rays each through all of them: layers missed or out of order",
         |_| layers_out_of_order(),
     ),
     (
@@ -73,7 +73,7 @@ const COUNTS: [Counted; 10] = [
     (
         "27",
         "C-27-possible",
-        "tiny (1e-9), huge (1e9) and very uneven (1e-6 to 1e6, mirrored) placements: refused",
+        "tiny (10^-9), huge (1e9) and very uneven (10^-6 to 1e6, mirrored) placements: refused",
         |_| possible_refused(),
     ),
     (
@@ -85,7 +85,7 @@ const COUNTS: [Counted; 10] = [
     (
         "28",
         "C-28-grazing",
-        "rays that rise or sink by 1 to 1e-19 over a plane, or lie in it: wrongly hit, or not finite",
+        "rays that rise or sink by 1 to 10^-19 over a plane, or lie in it: wrongly hit, or not finite",
         |_| grazing_wrong(),
     ),
     (

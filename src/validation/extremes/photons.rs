@@ -99,7 +99,7 @@ const ROWS: [Row; 19] = [
     (
         "34",
         "C-34-sizes",
-        "kernels of 1e-300, 1e-12, 1e12 and 1e300 m²: means that are negative or no numbers",
+        "kernels of 10^-300, 10^-12, 1e12 and 1e300 m²: means that are negative or no numbers",
         (0.0, 0.0),
         kernels_that_fail,
     ),

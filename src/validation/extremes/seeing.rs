@@ -35,7 +35,7 @@ const ROWS: [Row; 9] = [
     (
         "52",
         "C-52-nowhere",
-        "a floor that a lamp without extent lies in, at it and up to 1e-300 m beside it, by every method: samples that are no numbers",
+        "a floor that a lamp without extent lies in, at it and up to 10^-300 m beside it, by every method: samples that are no numbers",
         (0.0, 0.0),
         lamp_in_the_floor,
     ),
