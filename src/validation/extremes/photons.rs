@@ -226,7 +226,7 @@ fn truth(range: (f64, f64), setting: &Setting<'_>) -> Result<f64, Trouble> {
 const INSIDE: (f64, f64) = (-1.2, 1.2);
 
 fn light_by_area(setting: &Setting<'_>) -> Result<f64, Trouble> {
-    let by_area = |area: f64| indirect(&maps(150_000, 0, Some(area)), INSIDE, setting);
+    let by_area = |area: f64| indirect(&maps(600_000, 0, Some(area)), INSIDE, setting);
     let usual = by_area(0.04)?;
     let mut all = Vec::new();
     for area in [0.01, 0.16, 0.64] {
@@ -236,7 +236,7 @@ fn light_by_area(setting: &Setting<'_>) -> Result<f64, Trouble> {
 }
 
 fn light_over_truth(setting: &Setting<'_>) -> Result<f64, Trouble> {
-    let found = indirect(&maps(150_000, 0, Some(0.04)), INSIDE, setting)?;
+    let found = indirect(&maps(600_000, 0, Some(0.04)), INSIDE, setting)?;
     Ok(found / truth(INSIDE, setting)?)
 }
 
@@ -325,8 +325,8 @@ fn leaf_by_kernel(setting: &Setting<'_>) -> Result<f64, Trouble> {
 fn leaf_over_truth(setting: &Setting<'_>) -> Result<f64, Trouble> {
     let mut all = Vec::new();
     for w in BOTH_WAYS {
-        let found = leaf(&maps(100_000, 0, Some(0.5)), 1, w, setting)?;
-        all.push(found / leaf(&Path::default(), 128, w, setting)?);
+        let found = leaf(&maps(800_000, 0, Some(0.5)), 1, w, setting)?;
+        all.push(found / leaf(&Path::default(), 512, w, setting)?);
     }
     Ok(farthest(1.0, all))
 }
