@@ -37,7 +37,7 @@ const SCENES: [(&str, &str); 12] = [
     ("three_cubes", "examples/study/three_cubes.rgg"),
     ("two_spheres", "examples/study/two_spheres.rgg"),
     ("tree", "examples/poplar.rgg"),
-    ("crop_row", "benches/crop_row.rgg"),
+    ("crop", "examples/crop.rgg"),
     ("forest", "examples/forest.rgg"),
 ];
 

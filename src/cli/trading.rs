@@ -15,7 +15,6 @@ pub(super) fn trade(shell: &Shell, args: &TradeArgs) -> Result<(), Failure> {
         Some(output) if !args.manners.explain_options => output,
         _ => return shell.explain(&args.model.model, Command::Trade),
     };
-    let folder = Folder::open(&shell.world, output)?;
     let plan = Plan {
         budget: f64::from(args.budget),
         seeds: args.seeds,
@@ -23,6 +22,7 @@ pub(super) fn trade(shell: &Shell, args: &TradeArgs) -> Result<(), Failure> {
     let mut studio = studio(shell, &args.model)?;
     run(shell, &mut studio, |studio, run| {
         check_wishes(&shell.world, run)?;
+        let folder = Folder::open(&shell.world, output)?;
         let means = Means {
             world: &shell.world,
             audience: &*shell.terminal,

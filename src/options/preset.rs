@@ -74,7 +74,10 @@ impl Presets {
     /// What is wrong, for people: it is no TOML, names no quality, or an option has no such value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let file: toml::Table = text.parse().map_err(|error: toml::de::Error| {
-            format!("it is not TOML: {}", error.message().replace('\n', "; "))
+            let before = error.span().and_then(|span| text.get(..span.start));
+            let line = before.map_or(1, |before| 1 + before.matches('\n').count());
+            let why = error.message().replace('\n', "; ");
+            format!("line {line} is not TOML: {why}")
         })?;
         let mut presets = Self::default();
         for (name, table) in &file {
@@ -176,7 +179,7 @@ mod tests {
         assert_eq!(of(&options.presets), of(&Presets::default()));
         assert!(of(&options.presets).contains(&"global-photons".to_owned()));
         for (wrong, expected) in [
-            ("[draft", "not TOML"),
+            ("\n\n[draft", "line 3 is not TOML"),
             ("[fast]\nsamples = 1", "`fast` is no preset"),
             ("draft = 3", "`draft` is no preset"),
             ("[draft]\nsamples = 0", "in `[draft]`"),
