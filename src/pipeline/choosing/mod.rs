@@ -126,6 +126,16 @@ impl Chooser {
         }
     }
 
+    /// The same for a wanted error of another size.
+    #[must_use]
+    pub fn aiming(&self, error: f64) -> Self {
+        Self {
+            wish: Wish::Error(error),
+            base: self.base.clone(),
+            ..*self
+        }
+    }
+
     /// The methods that are open.
     #[must_use]
     pub fn families(&self, is_judged: bool) -> Vec<Family> {

@@ -1,0 +1,310 @@
+//! The picture that has a wanted error soonest.
+
+use super::{Sight, Taken, Taking};
+use crate::pipeline::choosing::family::{Family, TOP};
+use crate::pipeline::choosing::law::{Law, Offer};
+use crate::pipeline::choosing::pilot::Pilot;
+use crate::pipeline::choosing::{Chooser, Wish, readable, told};
+use crate::pipeline::failure::Failure;
+use crate::pipeline::report::{Phase, PictureError};
+use crate::pipeline::solving::Solved;
+use crate::pipeline::spot_check::samples_of_half;
+use crate::pipeline::until::Until;
+use crate::pipeline::viewing::{Shot, Viewing};
+use std::ops::RangeInclusive;
+
+/// A rung that leaves more than this part of the bias has gained nothing.
+const NO_GAIN: f64 = 0.8;
+/// Where bias keeps a wanted error out of reach, noise alone is brought to this part of it.
+const NOISE_BESIDE_BIAS: f64 = 0.5;
+/// The fewest and the most samples that are taken then.
+const SAMPLES_BESIDE_BIAS: RangeInclusive<f64> = 4.0..=4096.0;
+/// A picture that misses the wanted error is made again so many times by the same method: what misses by little is brought there sooner
+/// than by another.
+const AGAIN: u32 = 2;
+/// It then aims at this part of what it aimed at, times the wanted error over that of the picture.
+const BELOW: f64 = 0.9;
+
+/// What becomes of an offer once its light is solved.
+enum Verdict {
+    /// It keeps the wish.
+    Kept(Offer),
+    /// The rung above may.
+    Climb(Offer),
+    /// Path tracing does sooner.
+    Dropped,
+}
+
+/// What error is aimed at, so that the wanted one is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Aim {
+    wanted: f64,
+    error: f64,
+    n_again: u32,
+}
+
+impl Aim {
+    fn new(wanted: f64) -> Self {
+        Self {
+            wanted,
+            error: wanted,
+            n_again: 0,
+        }
+    }
+
+    /// What to aim at once a picture with more than the wanted error was made; `None` if the method does not do.
+    fn lower(self, seen: &PictureError, offer: Offer) -> Option<Self> {
+        let is_hopeful = offer.error <= self.error && self.n_again < AGAIN;
+        is_hopeful.then(|| Self {
+            error: BELOW * self.error * self.wanted / seen.relative,
+            n_again: self.n_again + 1,
+            ..self
+        })
+    }
+}
+
+impl<'s> Taking<'_, '_, '_, 's> {
+    /// With what reaches this error soonest.
+    pub(super) fn reach_error(&mut self, wanted: f64) -> Result<Taken, Failure> {
+        let chooser = Chooser::new(&self.run.options, Wish::Error(wanted));
+        let is_judged = Viewing::is_judged(self.sight.scene);
+        let (pilot, mut offer) = self.offer_for_error(&chooser)?;
+        let path_samples = pilot.path.samples_for(wanted).filter(|_| is_judged);
+        let path_seconds = path_samples.map(|n| pilot.path.seconds(n));
+        let is_open = chooser.is_free() && is_judged;
+        let mut notes = Vec::new();
+        let mut aim = Aim::new(wanted);
+        let (shot, exposure, facts) = loop {
+            let rest = path_seconds.filter(|_| is_open);
+            let settled = self.settle(&chooser.aiming(aim.error), &pilot, offer, rest)?;
+            let Some((settled, solved)) = settled else {
+                offer = chooser.path_offer(&pilot.path);
+                continue;
+            };
+            offer = settled;
+            let (shot, exposure) = self.shoot_to_error(&chooser, &pilot, offer, &solved)?;
+            let missed = shot.effort.error.filter(|error| error.relative > wanted);
+            let missed = missed.filter(|_| offer.family != Family::Path);
+            let next = missed.and_then(|error| aim.lower(&error, offer));
+            let instead = match (missed, next) {
+                (Some(_), Some(_)) => "more is taken of it",
+                (Some(_), None) if is_open => "path traced instead",
+                _ => break (shot, exposure, solved.facts),
+            };
+            let error = missed.map(|error| error.text()).unwrap_or_default();
+            let name = &self.run.options.renderer.text;
+            notes.push(format!(
+                "`{name}` seemed to do, but its error is {error}: {instead}"
+            ));
+            match next {
+                Some(next) => aim = next,
+                None => offer = chooser.path_offer(&pilot.path),
+            }
+        };
+        let n = shot.effort.samples_per_pixel;
+        self.run.options = chooser.with(offer.family, offer.rung, Some(n))?;
+        notes.extend(told(self.run));
+        if shot.is_whole {
+            notes.extend(unreached(&shot, wanted, offer.family, path_seconds));
+        }
+        Ok(Taken {
+            shot,
+            exposure,
+            facts,
+            notes,
+        })
+    }
+
+    /// What is expected to reach the wanted error soonest, and the pilot that says so.
+    fn offer_for_error(&mut self, chooser: &Chooser) -> Result<(Pilot<'s>, Offer), Failure> {
+        let Sight { scene, camera } = self.sight;
+        self.making.audience.begins("measuring");
+        let viewing = self.making.viewing(self.run);
+        let world = self.making.world;
+        self.studio.seconds.time(world, Phase::Prepare, || {
+            let pilot = Pilot::new(&viewing, scene, camera, chooser.wish)?;
+            let known = chooser.explore(&viewing, (scene, camera), &pilot)?;
+            let offer = chooser.best(&known, f64::INFINITY);
+            let is_judged = Viewing::is_judged(scene);
+            let offer = offer.unwrap_or_else(|| chooser.last_resort(&known, is_judged));
+            Ok((pilot, offer))
+        })
+    }
+
+    /// Takes the picture of an offer, and checks it unless its own halves tell all.
+    fn shoot_to_error(
+        &mut self,
+        chooser: &Chooser,
+        pilot: &Pilot<'_>,
+        offer: Offer,
+        solved: &Solved,
+    ) -> Result<(Shot, f64), Failure> {
+        let until = match (offer.family, chooser.samples, chooser.wish) {
+            (Family::Path, None, Wish::Error(most)) => Until::Error {
+                most,
+                expected: offer.samples,
+            },
+            _ => Until::Samples,
+        };
+        let (mut shot, exposure) = self.shoot(solved, || until)?;
+        if offer.family != Family::Path && shot.is_whole {
+            let n = samples_of_half(shot.effort.n_samples).max(pilot.samples() / 2);
+            self.check(Some(&*pilot.judge), &mut shot, n)?;
+        }
+        Ok((shot, exposure))
+    }
+
+    /// Solves the light of an offer and measures again what comes of it: rung by rung until it keeps the wanted error. `None` if path tracing,
+    /// in so many seconds, is the better way.
+    fn settle(
+        &mut self,
+        chooser: &Chooser,
+        pilot: &Pilot<'_>,
+        offer: Offer,
+        path_seconds: Option<f64>,
+    ) -> Result<Option<(Offer, Solved)>, Failure> {
+        let world = self.making.world;
+        let mut offer = offer;
+        let mut before: Option<Law> = None;
+        let mut is_last = false;
+        loop {
+            self.run.options = chooser.with(offer.family, offer.rung, Some(offer.samples))?;
+            let begin = world.now();
+            let solved = match self.solve() {
+                Ok(solved) => solved,
+                // More memory than there is: the rung below fitted.
+                Err(Failure::World(_)) if before.is_some() && !is_last => {
+                    (offer.rung, is_last) = (offer.rung - 1, true);
+                    continue;
+                }
+                Err(Failure::World(_)) if path_seconds.is_some() => return Ok(None),
+                Err(failure) => return Err(failure),
+            };
+            if !offer.family.has_rungs() || !Viewing::is_judged(self.sight.scene) {
+                return Ok(Some((offer, solved)));
+            }
+            let shared = world.now().saturating_sub(begin).as_secs_f64();
+            let law = self.measure(pilot, &solved, shared)?;
+            match verdict(chooser, offer, law, before, (path_seconds, is_last)) {
+                Verdict::Dropped => return Ok(None),
+                Verdict::Climb(above) => (offer, before) = (above, Some(law)),
+                Verdict::Kept(kept) => {
+                    let n = Some(kept.samples);
+                    self.run.options = chooser.with(kept.family, kept.rung, n)?;
+                    return Ok(Some((kept, solved)));
+                }
+            }
+        }
+    }
+
+    /// What the picture costs and how wrong it will be, with light that is solved.
+    fn measure(&mut self, pilot: &Pilot<'_>, solved: &Solved, shared: f64) -> Result<Law, Failure> {
+        self.making.audience.begins("measuring");
+        let viewing = self.making.viewing(self.run);
+        let world = self.making.world;
+        let sight = (&**self.sight.scene, self.sight.camera);
+        let measure = || pilot.measure(&viewing, sight, (&solved.solution, shared));
+        self.studio.seconds.time(world, Phase::Prepare, measure)
+    }
+}
+
+/// Whether an offer whose light was measured keeps the wanted error, and what to do if it does not.
+fn verdict(
+    chooser: &Chooser,
+    offer: Offer,
+    law: Law,
+    before: Option<Law>,
+    (path_seconds, is_last): (Option<f64>, bool),
+) -> Verdict {
+    let Wish::Error(wanted) = chooser.wish else {
+        return Verdict::Kept(offer);
+    };
+    let with = |n: u32| {
+        let samples = chooser.samples.unwrap_or(n);
+        Verdict::Kept(Offer {
+            samples,
+            error: law.error(samples),
+            ..offer
+        })
+    };
+    if let Some(n) = law.samples_for(wanted) {
+        let n = n.max(4).next_multiple_of(2);
+        // What is solved is solved.
+        let left = law.seconds(n) - law.shared;
+        return match path_seconds {
+            Some(path) if left > path => Verdict::Dropped,
+            _ => with(n),
+        };
+    }
+    let above = law.climbed(offer.family, 1);
+    let is_sooner = path_seconds.is_none_or(|path| above.seconds(4) < path);
+    let has_gained = before.is_none_or(|before| law.bias < NO_GAIN * before.bias);
+    if is_sooner && has_gained && offer.rung < TOP && !is_last {
+        return Verdict::Climb(Offer {
+            rung: offer.rung + 1,
+            ..offer
+        });
+    }
+    if path_seconds.is_some() {
+        return Verdict::Dropped;
+    }
+    let n = law.noise / (NOISE_BESIDE_BIAS * wanted).powi(2);
+    let n = n.clamp(*SAMPLES_BESIDE_BIAS.start(), *SAMPLES_BESIDE_BIAS.end());
+    with((n as u32).next_multiple_of(2))
+}
+
+/// What people are told of a picture that is more wrong than they want, and what would not be.
+fn unreached(shot: &Shot, most: f64, family: Family, path_seconds: Option<f64>) -> Option<String> {
+    let wanted = format!("{:.1} %", 100.0 * most);
+    let Some(error) = &shot.effort.error else {
+        return Some(format!(
+            "whether the error is at most {wanted} is not known: light is focused here that path tracing does not find"
+        ));
+    };
+    if error.relative <= most {
+        return None;
+    }
+    let instead = match (family, path_seconds) {
+        (Family::Path, _) => "without `--samples` there would be as many as it takes".to_owned(),
+        (_, Some(seconds)) => format!(
+            "`--renderer path` would reach it in about {}",
+            readable(seconds)
+        ),
+        (_, None) => "`--renderer path` would come nearer to it".to_owned(),
+    };
+    let is_sure = error.low > most;
+    let verb = if is_sure { "is" } else { "may be" };
+    Some(format!(
+        "the error {verb} more than the wanted {wanted}: {instead}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::report::Covers;
+
+    /// A picture that misses by a quarter is made again, aiming lower each time, but not for ever, and not where nothing lower was promised.
+    #[test]
+    fn what_misses_by_little_is_tried_again_and_not_for_ever() {
+        let seen = PictureError {
+            relative: 0.025,
+            low: 0.02,
+            high: 0.03,
+            covers: Covers::NoiseAndBias,
+        };
+        let offer = |error: f64| Offer {
+            family: Family::PhotonMap,
+            rung: 2,
+            samples: 8,
+            seconds: 1.0,
+            error,
+        };
+        let first = Aim::new(0.02).lower(&seen, offer(0.018)).unwrap();
+        assert!((first.error - 0.0144).abs() < 1e-12, "{first:?}");
+        let second = first.lower(&seen, offer(0.013)).unwrap();
+        assert!(second.error < first.error);
+        assert_eq!(second.lower(&seen, offer(0.009)), None);
+        assert_eq!(Aim::new(0.02).lower(&seen, offer(0.03)), None);
+    }
+}
