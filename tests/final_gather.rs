@@ -12,8 +12,10 @@ use room::{Room, at, gray, square};
 use std::f64::consts::PI;
 use understory::color::Rgb;
 use understory::geometry::Shape;
+use understory::integrator::radiosity::Solver;
 use understory::integrator::{
-    CancelToken, Integrator, Path, PhotonMapping, RadianceEstimator, RayCounts, RenderContext,
+    CancelToken, Integrator, Path, PhotonMapping, RadianceEstimator, Radiosity, RayCounts,
+    RenderContext,
 };
 use understory::light::{Environment, Light, Sky};
 use understory::material::Material;
@@ -29,6 +31,17 @@ fn gathered(photons: [u64; 2], rays: u32) -> PhotonMapping {
         caustic_photons: Some(photons[1]),
         final_gather: rays,
         ..PhotonMapping::default()
+    }
+}
+
+/// Radiosity of patches a 32nd of the scene wide, gathered with so many rays.
+fn coarse(rays: u32) -> Radiosity {
+    Radiosity {
+        solver: Some(Solver::Gather),
+        hemicube_pixels: 24,
+        subdivision_depth: 0,
+        final_gather: rays,
+        ..Radiosity::default()
     }
 }
 
@@ -91,16 +104,19 @@ fn a_shining_closed_box_is_as_bright_in_its_corners_as_anywhere() {
     let albedo = 0.6;
     let wall = Material::lambert(gray(albedo)).emitting(gray(1.0), Rgb::BLACK);
     let scene = closed_box(&wall).build();
-    let estimator = prepared(&gathered([200_000, 0], 256), &scene);
     let truth = 1.0 / (1.0 - albedo);
-    // The middle of the floor, along an edge, into a corner.
-    for (x, y, tolerance) in [(0.0, 0.0, 0.02), (0.985, 0.0, 0.03), (0.985, 0.985, 0.03)] {
-        let from = |u: f64, v: f64| DVec3::new(x + 0.01 * u, y + 0.01 * v, 0.0);
-        let found = mean_over(&*estimator, (8, 16), from, DVec3::NEG_Z);
-        assert!(
-            (found / truth - 1.0).abs() < tolerance,
-            "{x} {y}: {found} {truth}"
-        );
+    let photons = gathered([200_000, 0], 256);
+    for method in [&photons as &dyn Integrator, &coarse(256)] {
+        let estimator = prepared(method, &scene);
+        // The middle of the floor, along an edge, into a corner.
+        for (x, y, tolerance) in [(0.0, 0.0, 0.02), (0.985, 0.0, 0.03), (0.985, 0.985, 0.03)] {
+            let from = |u: f64, v: f64| DVec3::new(x + 0.01 * u, y + 0.01 * v, 0.0);
+            let found = mean_over(&*estimator, (8, 16), from, DVec3::NEG_Z);
+            assert!(
+                (found / truth - 1.0).abs() < tolerance,
+                "{x} {y}: {found} {truth}"
+            );
+        }
     }
 }
 
@@ -216,6 +232,77 @@ fn rooms_lit_through_a_door_agree_with_the_path_tracer_object_by_object() {
             "{name}: {found} {truth}"
         );
     }
+}
+
+/// A closed room of patches 0.11 m wide with a block in it, region by region to 5 %, and the mean of all to 2 %. Noise is about 0.7 % of
+/// a region and a third of that of all: chance fails it less than once in 10⁴ seeds. Without a gather the strips at the foot of the block,
+/// narrower than patches, are off by up to a third.
+#[test]
+fn a_room_with_a_block_agrees_with_the_path_tracer_region_by_region_over_radiosity() {
+    let white = || Material::lambert(gray(0.7));
+    let block = Shape::Box {
+        half_x: 0.3,
+        half_y: 0.3,
+        length: 0.7,
+    };
+    let scene = closed_box(&white())
+        .with(block, at(0.25, 0.2, -1.0), white())
+        .lit_by(Light::point(DVec3::new(-0.5, -0.4, 0.5), gray(10.0)))
+        .build();
+    let [plain, radiosity] = [0, 256].map(|rays| prepared(&coarse(rays), &scene));
+    let path = prepared(&Path::default(), &scene);
+    // Corner, along, across, direction. In the shadow behind the block: strips at its foot, and wider floor; what it is seen to be.
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let views: [(&str, DVec3, DVec3, DVec3, DVec3); 7] = [
+        (
+            "foot behind",
+            DVec3::new(0.0, 0.505, -0.9),
+            x * 0.5,
+            y * 0.03,
+            -z,
+        ),
+        (
+            "foot beside",
+            DVec3::new(0.555, 0.0, -0.9),
+            x * 0.03,
+            y * 0.4,
+            -z,
+        ),
+        (
+            "foot before",
+            DVec3::new(0.0, -0.13, -0.9),
+            x * 0.5,
+            y * 0.025,
+            -z,
+        ),
+        ("floor", DVec3::new(-0.9, -0.9, -0.5), x * 0.8, y * 1.8, -z),
+        (
+            "back of block",
+            DVec3::new(0.0, 0.55, -0.95),
+            x * 0.5,
+            z * 0.6,
+            -y,
+        ),
+        ("ceiling", DVec3::new(-0.9, -0.9, 0.9), x * 1.8, y * 1.8, z),
+        ("wall", DVec3::new(0.9, -0.9, -0.9), y * 1.8, z * 1.8, x),
+    ];
+    let off = |found: f64, truth: f64| found / truth - 1.0;
+    let mut told = Vec::new();
+    let mut sums = [0.0; 2];
+    for (name, corner, along, across, w) in views {
+        let from = |u: f64, v: f64| corner + along * u + across * v;
+        let truth = mean_over(&*path, (16, 256), from, w);
+        let found = mean_over(&*radiosity, (16, 8), from, w);
+        let without = mean_over(&*plain, (16, 8), from, w);
+        told.push((name, off(found, truth), off(without, truth)));
+        sums[0] += found;
+        sums[1] += truth;
+    }
+    let is_right = |(_, with, _): &(&str, f64, f64)| with.abs() < 0.05;
+    assert!(told.iter().all(is_right), "{told:?}");
+    assert!(off(sums[0], sums[1]).abs() < 0.02, "{told:?}");
+    let is_seen = |(_, _, without): &(&str, f64, f64)| without.abs() > 0.2;
+    assert!(told.iter().any(is_seen), "nothing to be seen: {told:?}");
 }
 
 #[test]
@@ -377,10 +464,11 @@ fn leaves_and_ground_under_a_sky_agree_with_the_path_tracer() {
         )
         .under(sky)
         .build();
-    let (photon, path) = (
+    let methods = [
         prepared(&gathered([200_000, 0], 128), &scene),
-        prepared(&Path::default(), &scene),
-    );
+        prepared(&coarse(128), &scene),
+    ];
+    let path = prepared(&Path::default(), &scene);
     for (name, eye, w) in [
         ("leaf from below", DVec3::new(-0.1, 0.0, 0.2), DVec3::Z),
         ("leaf from above", DVec3::new(0.2, 0.1, 2.0), DVec3::NEG_Z),
@@ -394,12 +482,14 @@ fn leaves_and_ground_under_a_sky_agree_with_the_path_tracer() {
     ] {
         let (side, up) = (DVec3::X * 0.2, w.cross(DVec3::X) * 0.2);
         let from = |u: f64, v: f64| eye + side * (u - 0.5) + up * (v - 0.5);
-        let found = mean_over(&*photon, (6, 64), from, w);
         let truth = mean_over(&*path, (6, 1024), from, w);
-        assert!(
-            (found / truth - 1.0).abs() < 0.03,
-            "{name}: {found} {truth}"
-        );
+        for (method, over) in methods.iter().zip(["photons", "radiosity"]) {
+            let found = mean_over(&**method, (6, 64), from, w);
+            assert!(
+                (found / truth - 1.0).abs() < 0.03,
+                "{name}, {over}: {found} {truth}"
+            );
+        }
     }
 }
 
@@ -414,13 +504,20 @@ fn what_is_seen_depends_neither_on_threads_nor_on_what_was_seen_before() {
             Ray::new(eye, (target - eye).normalize())
         })
         .collect();
+    let photons = gathered([20_000, 0], 32);
+    for method in [&photons as &(dyn Integrator + Sync), &coarse(32)] {
+        does_not_depend_on_order(&scene, method, &rays);
+    }
+}
+
+fn does_not_depend_on_order(scene: &Scene, method: &(dyn Integrator + Sync), rays: &[Ray]) {
     let on = |threads, backwards: bool| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .unwrap();
         pool.install(|| {
-            let estimator = prepared(&gathered([20_000, 0], 32), &scene);
+            let estimator = prepared(method, scene);
             if backwards {
                 for ray in rays.iter().rev() {
                     seen(&*estimator, *ray, 1);
@@ -452,4 +549,84 @@ fn no_photons_and_one_ray_are_enough_for_one_bounce() {
     };
     let (found, truth) = (of(&gathered([0, 0], 1), 256), of(&one_bounce, 256));
     assert!((found / truth - 1.0).abs() < 0.03, "{found} {truth}");
+}
+
+/// Of 60 leaves in a closed white box with a lamp, what is seen from above and from below, leaves and walls, both sides: by reflection
+/// and by transmission. 256 paths at 400 places: about 0.5 % of noise; six times that would be 3 %.
+#[test]
+fn leaves_in_a_box_pass_on_all_their_light_over_radiosity() {
+    let number = |k: u64, what: u64| rng::unit_f64(rng::hash(&[k, what])) - 0.5;
+    let mut room = closed_box(&Material::lambert(gray(0.5)));
+    for k in 0..60 {
+        let turns = [3, 4, 5].map(|what| number(k, what));
+        let turn = DQuat::from_euler(glam::EulerRot::XYZ, turns[0], turns[1], turns[2]);
+        let place = DVec3::new(number(k, 0), number(k, 1), 0.6 * number(k, 2)) * 1.6;
+        let place = DAffine3::from_rotation_translation(turn, place);
+        room = room.with(square(0.12), place, Material::leaf(gray(0.45), gray(0.4)));
+    }
+    let lamp = Light::point(DVec3::new(0.0, 0.0, 0.8), gray(10.0));
+    let scene = room.lit_by(lamp).build();
+    let radiosity = prepared(&coarse(128), &scene);
+    let path = prepared(&Path::default(), &scene);
+    for (z, w) in [(0.9, DVec3::NEG_Z), (-0.9, DVec3::Z)] {
+        let from = |u: f64, v: f64| DVec3::new(1.4 * u - 0.7, 1.4 * v - 0.7, z);
+        let found = mean_over(&*radiosity, (20, 16), from, w);
+        let truth = mean_over(&*path, (20, 256), from, w);
+        assert!((found / truth - 1.0).abs() < 0.03, "{w}: {found} {truth}");
+    }
+}
+
+/// What sources cannot be asked for counts in a gather, and once: an endless plane that shines covers the half-space, so the light is ρ L.
+#[test]
+fn what_sources_are_not_asked_for_is_gathered_over_radiosity() {
+    let shining = Material::lambert(Rgb::BLACK).emitting(gray(2.0), gray(2.0));
+    let scene = Room::default()
+        .with(
+            square(1.0),
+            DAffine3::IDENTITY,
+            Material::lambert(gray(0.5)),
+        )
+        .with(Shape::Plane, at(0.0, 0.0, 2.0), shining)
+        .build();
+    for rays in [0, 64] {
+        let estimator = prepared(&coarse(rays), &scene);
+        let from = |u: f64, v: f64| DVec3::new(u - 0.5, v - 0.5, 0.5);
+        let found = mean_over(&*estimator, (8, 16), from, DVec3::NEG_Z);
+        assert!((found - 1.0).abs() < 0.03, "{rays}: {found}");
+    }
+}
+
+/// A floor beside a mirror under a lamp, with a wall across: light of the lamp by the mirror is found by rays of the gather, light of the
+/// wall by the mirror as well. 400 paths at 256 places: 0.5 %.
+#[test]
+fn mirrors_throw_light_once_over_radiosity() {
+    let lamp = Material::lambert(Rgb::BLACK).emitting(gray(40.0), Rgb::BLACK);
+    let down = DAffine3::from_rotation_x(PI);
+    let wall = |x: f64, turn: f64| at(x, 0.0, 0.8) * DAffine3::from_rotation_y(turn);
+    let scene = Room::default()
+        .with(
+            square(0.8),
+            DAffine3::IDENTITY,
+            Material::lambert(gray(0.8)),
+        )
+        .with(
+            square(0.8),
+            wall(0.8, -PI / 2.0),
+            Material::lambert(gray(0.7)),
+        )
+        .with(
+            square(0.8),
+            wall(-0.8, PI / 2.0),
+            Material::mirror(gray(0.9)),
+        )
+        .with(square(0.3), at(0.2, 0.0, 2.0) * down, lamp)
+        .build();
+    let radiosity = prepared(&coarse(256), &scene);
+    let path = prepared(&Path::default(), &scene);
+    for (low, high) in [(-0.75, -0.4), (-0.3, 0.3), (0.4, 0.75)] {
+        let from = |u: f64, v: f64| DVec3::new(low + u * (high - low), 1.2 * v - 0.6, 0.1);
+        let found = mean_over(&*radiosity, (16, 32), from, DVec3::NEG_Z);
+        let truth = mean_over(&*path, (16, 400), from, DVec3::NEG_Z);
+        assert!((found / truth - 1.0).abs() < 0.03, "{low}: {found} {truth}");
+    }
 }

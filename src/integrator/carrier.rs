@@ -190,6 +190,15 @@ pub(super) fn frame_of(point: &SurfacePoint) -> ScatteringFrame {
     }
 }
 
+/// The normal, turned to the side of `w`.
+pub(super) fn facing(normal: DVec3, w: DVec3) -> DVec3 {
+    if normal.dot(w) >= 0.0 {
+        normal
+    } else {
+        -normal
+    }
+}
+
 /// A surface without its matt part.
 pub(super) fn lobes_of<'o>(optics: &Optics<'o>) -> Scattering<'o> {
     Scattering {

@@ -15,6 +15,8 @@ mod bytes;
 mod clear_shadow;
 mod context;
 pub mod driver;
+pub mod final_gather;
+pub mod grid;
 pub mod guide;
 pub mod interception;
 pub mod medium;

@@ -42,14 +42,43 @@ pub(super) struct LastScattering {
     pub(super) reach: Reach,
 }
 
+impl LastScattering {
+    /// A point that has asked sources for all the light that can be asked for: only of others does what a ray meets count.
+    pub(super) fn asked_at(position: DVec3) -> Self {
+        Self {
+            from: Receiver {
+                position,
+                normal: None,
+                is_two_sided: true,
+            },
+            // Next to nothing: whatever can be asked for outweighs it.
+            pdf_solid_angle: f64::MIN_POSITIVE,
+            reach: Reach::First,
+        }
+    }
+}
+
+/// Which sources count that a ray meets behind mirrors and glass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Behind {
+    /// All: the camera sees them.
+    All,
+    /// All but the disk of the sun, which hardly any ray would meet.
+    AllButSun,
+    /// None: a map of caustics knows their light.
+    Nothing,
+}
+
 /// What a ray is that light is asked along.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked {
     /// The first vertex whose random numbers it may use.
     pub(super) first_vertex: u32,
-    /// Whether it is the camera's: it sees sources behind mirrors and glass. Others leave these to maps of caustics.
+    /// Whether it is the camera's: it sees sources straight away, and splits at mirrors and glass.
     pub(super) is_camera: bool,
-    /// The scattering it comes from, if sources count where it meets them.
+    /// What counts behind those.
+    pub(super) behind: Behind,
+    /// The scattering it comes from, if sources count where it meets them straight away.
     pub(super) last: Option<LastScattering>,
 }
 
@@ -58,6 +87,7 @@ impl Asked {
     pub(super) const CAMERA: Self = Self {
         first_vertex: 0,
         is_camera: true,
+        behind: Behind::All,
         last: None,
     };
 }
@@ -134,7 +164,7 @@ impl<'s> Viewer<'s> {
                 nearest = way.distance;
             }
             let Some(met) = way.end else {
-                radiance += branch.throughput * self.escaping_radiance(&branch);
+                radiance += branch.throughput * self.escaping_radiance(&branch, asked.behind);
                 next = open.pop();
                 continue;
             };
@@ -167,7 +197,7 @@ impl<'s> Viewer<'s> {
                 open.pop()
             } else {
                 radiance += branch.throughput * self.glossy_direct(&seen, sampler, rays);
-                let onward = self.scatter(branch, &met, asked.is_camera, sampler);
+                let onward = self.scatter(branch, &met, asked.behind, sampler);
                 onward.or_else(|| open.pop())
             };
         }
@@ -182,7 +212,7 @@ impl<'s> Viewer<'s> {
         &self,
         branch: Branch,
         met: &Met<'_>,
-        is_camera: bool,
+        behind: Behind,
         sampler: &Sampler,
     ) -> Option<Branch> {
         let wo = -branch.ray.direction;
@@ -210,7 +240,7 @@ impl<'s> Viewer<'s> {
             throughput: survivor(throughput, compression, branch.depth, sampler)?,
             compression,
             last,
-            sees_sources: is_camera || last.is_some(),
+            sees_sources: behind != Behind::Nothing || last.is_some(),
             depth: branch.depth + 1,
             ..branch
         })
@@ -288,7 +318,7 @@ impl<'s> Viewer<'s> {
     }
 
     /// Radiance of sky and sun along a ray that meets nothing.
-    fn escaping_radiance(&self, branch: &Branch) -> Rgb {
+    fn escaping_radiance(&self, branch: &Branch, behind: Behind) -> Rgb {
         let (sources, w) = (&self.sources, branch.ray.direction);
         if !branch.sees_sources {
             return self.unsampled_radiance(w);
@@ -299,11 +329,14 @@ impl<'s> Viewer<'s> {
             }
             Some(_) | None => radiance,
         };
-        weighted(sources.sky_radiance(w), &|reach| {
+        let sky = weighted(sources.sky_radiance(w), &|reach| {
             sources.sky_pdf_solid_angle(w, reach)
-        }) + weighted(sources.sun_radiance(w), &|reach| {
-            sources.sun_pdf_solid_angle(w, reach)
-        })
+        });
+        if behind == Behind::AllButSun && branch.last.is_none() {
+            return sky;
+        }
+        let sun = |reach| sources.sun_pdf_solid_angle(w, reach);
+        sky + weighted(sources.sun_radiance(w), &sun)
     }
 
     /// Radiance of what shines from far away and is not sampled as a source: land below the horizon of a sky.

@@ -249,7 +249,7 @@ pub const ABOVE_SURFACE: f64 = 1e-6;
 /// What rounding may move cells of a grid by against the point that is searched round, as a share of them.
 ///
 /// Places are known to `f64`, so only grids of more than 10⁶ cells along an axis come near it; those that cannot tell cells apart search
-/// all. Used by [`crate::integrator::photon_map::grid`].
+/// all. Used by [`crate::integrator::grid`].
 pub const CELL_SLACK: f64 = 1e-9;
 
 /// How far beyond a polygon, in pixels, the middle of a pixel of a hemicube may lie that still shows it.

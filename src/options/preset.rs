@@ -32,7 +32,11 @@ const BUILT_IN: [(Quality, Renderer, Values); 9] = [
         ],
     ),
     (Quality::Draft, Renderer::Raytracer, &[("samples", "8")]),
-    (Quality::Preview, Renderer::Photon, &[("samples", "16")]),
+    (
+        Quality::Preview,
+        Renderer::Photon,
+        &[("samples", "16"), ("final-gather", "256")],
+    ),
     (Quality::Preview, Renderer::Radiosity, &[("samples", "16")]),
     (Quality::Final, Renderer::Path, &[("samples", "512")]),
     (

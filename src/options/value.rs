@@ -1,7 +1,7 @@
 //! The kinds of values options have, and how each is written.
 
 use crate::color::Rgb;
-use crate::integrator::photon_map::MOST_GATHER_RAYS;
+use crate::integrator::final_gather::MOST_GATHER_RAYS;
 use crate::integrator::requirements::Features;
 use crate::math::angle::Angle;
 use crate::turtle::Layers;
@@ -62,15 +62,31 @@ impl OptionValue for PhotonCount {
     }
 }
 
-/// Rays of a final gather, 0 (none) to 65536.
+/// Rays of a final gather, 0 (none) to 65536; as many as suit the renderer if nobody says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GatherRays(pub u32);
+pub struct GatherRays(pub Option<u32>);
+
+/// Rays of a gather over photons where nobody says: a map is always blurred.
+const RAYS_OVER_PHOTONS: u32 = 256;
+
+impl GatherRays {
+    /// How many they are by this renderer.
+    #[must_use]
+    pub fn by(self, renderer: Renderer) -> u32 {
+        match (self.0, renderer) {
+            (Some(n), _) => n,
+            (None, Renderer::Photon) => RAYS_OVER_PHOTONS,
+            (None, Renderer::Path | Renderer::Raytracer | Renderer::Radiosity) => 0,
+        }
+    }
+}
 
 impl OptionValue for GatherRays {
     fn parse(text: &str) -> Result<Self, String> {
         match text.replace('_', "").parse() {
-            Ok(n) if n <= MOST_GATHER_RAYS => Ok(Self(n)),
-            _ => Err("a whole number from 0 to 65536".into()),
+            Ok(n) if n <= MOST_GATHER_RAYS => Ok(Self(Some(n))),
+            _ if text == "auto" => Ok(Self(None)),
+            _ => Err("a whole number from 0 to 65536, or `auto`".into()),
         }
     }
 }

@@ -265,7 +265,7 @@ fn method(options: &Options) -> Method {
             photon_area: options.photon_area.value.map(|area| area.0),
             passes: options.passes.value.get(),
             max_depth: options.recursion_depth.value,
-            final_gather: options.final_gather.value.0,
+            final_gather: options.final_gather.value.by(Renderer::Photon),
             kept: options.require.value,
             ..PhotonMapping::default()
         }),
@@ -278,6 +278,7 @@ fn method(options: &Options) -> Method {
             subdivision_depth: options.subdivision_depth.value.0,
             kept: options.require.value,
             max_depth: options.recursion_depth.value,
+            final_gather: options.final_gather.value.by(Renderer::Radiosity),
             ..Radiosity::default()
         }),
     }

@@ -229,6 +229,7 @@ fn radiosity() -> Family {
                 ("subdivision-threshold", (*threshold).to_owned()),
                 ("subdivision-depth", depth.to_string()),
                 ("hemicube-pixels", pixels.to_string()),
+                ("final-gather", "auto".to_owned()),
                 ("samples", samples.to_string()),
             ],
         });
@@ -255,8 +256,10 @@ fn even_mesh() -> Family {
                 ("samples", 8),
             ],
         );
-        rung.settings
-            .push(("subdivision-threshold", "0".to_owned()));
+        rung.settings.extend([
+            ("subdivision-threshold", "0".to_owned()),
+            ("final-gather", "auto".to_owned()),
+        ]);
         rung
     });
     Family {
@@ -306,7 +309,9 @@ fn presets(name: &'static str, renderer: Renderer) -> Family {
                 !key.starts_with("sub") && !key.starts_with("hemi") && *key != "max-depth"
             }
             Renderer::Radiosity => {
-                *key == "samples" || key.starts_with("sub") || key.starts_with("hemi")
+                ["samples", "final-gather"].contains(key)
+                    || key.starts_with("sub")
+                    || key.starts_with("hemi")
             }
             Renderer::Raytracer => *key == "samples",
         };

@@ -12,9 +12,10 @@
 //!
 //! Of a piece smaller than the kernel the whole is taken ([`pieces`](super::pieces)): all its photons of one side over its area.
 
-use super::grid::Grid;
-use super::stored::{Stored, facing};
+use super::stored::Stored;
 use crate::color::Rgb;
+use crate::integrator::carrier::facing;
+use crate::integrator::grid::Grid;
 use crate::math::Ray;
 use crate::math::frame::Frame;
 use crate::math::functions::{atan2, cos, sin};

@@ -7,10 +7,11 @@
 //! Where kernels differ in size ([`spots`](super::spots)) there is a layer of samples for each size. Fine ones win where they are.
 
 use super::estimate::Hidden;
-use super::grid::{Grid, Outline};
 use super::pieces::{PieceLight, small};
-use super::stored::{PackedNormal, facing};
+use super::stored::PackedNormal;
 use crate::color::Rgb;
+use crate::integrator::carrier::facing;
+use crate::integrator::grid::{Grid, Outline};
 use crate::math::Ray;
 use crate::math::frame::Frame;
 use crate::scene::{Piece, Scene, SurfacePoint};

@@ -11,24 +11,18 @@
 //!
 //! ```text
 //! stored      which photons are stored              radius      how large kernels are
-//! grid        photons and samples by place          estimate    irradiance over the real area
-//! spots       where irradiance is sampled           pieces      leaves smaller than the kernel
-//! irradiance  the samples, asked by views           view        from the camera to the maps
-//! progressive passes in the memory of one           solution    all of it, kept and as bytes
-//! hemisphere  irradiance and its gradients by rays  cache       gathered irradiance, kept for all cameras
-//! final_gather  indirect light by rays instead of from the map
-//! guide       directions that light comes from
+//! spots       where irradiance is sampled           estimate    irradiance over the real area
+//! irradiance  the samples, asked by views           pieces      leaves smaller than the kernel
+//! progressive passes in the memory of one           view        what views ask of the maps
 //! trials      estimates from photons laid out by hand
+//!                                                   solution    all of it, kept and as bytes
 //! ```
+//! Views are those of the [final gather](super::final_gather), with or without it.
+//!
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
 
-mod cache;
 mod estimate;
-mod final_gather;
-pub mod grid;
-mod guide;
-mod hemisphere;
 mod irradiance;
 mod pieces;
 mod progressive;
@@ -40,6 +34,7 @@ pub(crate) mod trials;
 mod view;
 
 use super::carrier::Carrier;
+use super::final_gather::{FinalGather, GatherSettings, View};
 use super::medium::Bodies;
 use super::photon::{Aim, Emission, Photons, trace};
 use super::requirements::{Feature, Features, Requirements};
@@ -51,7 +46,6 @@ use super::{
 use crate::material::Material;
 use crate::math::{Bounds3, rng};
 use crate::scene::Scene;
-use final_gather::{FinalGather, GatherSettings};
 use glam::DVec3;
 use irradiance::IrradianceMap;
 use progressive::Progressive;
@@ -60,7 +54,6 @@ use spots::World;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use stored::{Collector, Stored, Wanted};
-use view::View;
 
 /// Bytes that a stored photon takes while the maps are made: itself, its copies in lists that are joined and sorted.
 pub const BYTES_PER_PHOTON: u64 = 3 * size_of::<Stored>() as u64;
@@ -75,9 +68,6 @@ const LONGEST_PATH: u32 = 1024;
 /// Photons for caustics where their number is not given.
 const CAUSTIC_PHOTONS: u64 = 1_000_000;
 
-/// The most rays of a final gather; more are as many.
-pub const MOST_GATHER_RAYS: u32 = 1 << 16;
-
 /// Settings of photon mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhotonMapping {
@@ -91,7 +81,8 @@ pub struct PhotonMapping {
     pub passes: u32,
     /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
     pub max_depth: u32,
-    /// Rays of each [final gather](final_gather), up to [`MOST_GATHER_RAYS`]; 0: indirect light comes straight from the map.
+    /// Rays of each [final gather](super::final_gather), up to [`MOST_GATHER_RAYS`](super::final_gather::MOST_GATHER_RAYS); 0: indirect
+    /// light comes straight from the map.
     /// Without effect where caustics are in the map of all light, for want of photons of their own.
     pub final_gather: u32,
     /// Photons that may be stored.
@@ -166,7 +157,12 @@ impl PhotonMapping {
         self.caustic_photons.unwrap_or(CAUSTIC_PHOTONS)
     }
 
-    fn look<'s>(&self, scene: &'s Scene, maps: Arc<PhotonSolution>, seed: u64) -> View<'s> {
+    fn look<'s>(
+        &self,
+        scene: &'s Scene,
+        maps: Arc<PhotonSolution>,
+        seed: u64,
+    ) -> View<'s, PhotonSolution> {
         let requirements = Requirements::of(scene, self.kept);
         let carrier = Carrier {
             scene,
@@ -177,7 +173,7 @@ impl PhotonMapping {
         View {
             viewer: Viewer { carrier, sources },
             gather: self.gather((scene, &requirements), &maps, seed),
-            maps,
+            light: maps,
         }
     }
 
@@ -196,17 +192,11 @@ impl PhotonMapping {
             return None;
         }
         let settings = GatherSettings {
-            rays: self.final_gather.min(MOST_GATHER_RAYS),
+            rays: self.final_gather,
             max_depth: self.max_depth,
             seed,
         };
-        let new = || Arc::new(FinalGather::new(scene, maps.global.as_ref(), settings));
-        let shared = maps.gather.get_or_init(new);
-        if shared.settings == settings {
-            Some(Arc::clone(shared))
-        } else {
-            Some(new())
-        }
+        Some(FinalGather::over(maps, scene, settings))
     }
 
     fn solution(

@@ -10,7 +10,6 @@
 //! only so often as passes double, twice. Places are as near to each other as the last kernel needs. Where the first pass has left gaps
 //! later ones find places; what these missed is made up for.
 
-use super::grid::Grid;
 use super::irradiance::{IrradianceMap, Layer, SPACING};
 use super::pieces::{PieceLight, split_off_pieces, together};
 use super::radius::Radii;
@@ -18,6 +17,7 @@ use super::spots::{
     Key, SpotLayer, SpotLight, World, anywhere, cells, newly_found, scene_size, spots,
 };
 use super::stored::{PackedNormal, Stored};
+use crate::integrator::grid::Grid;
 use glam::Vec3;
 use rayon::prelude::*;
 

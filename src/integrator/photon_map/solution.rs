@@ -5,12 +5,12 @@
 //! its surroundings), of which there are fewer than photons. Numbers that no solution has are refused.
 
 use super::estimate::Hidden;
-use super::final_gather::FinalGather;
 use super::irradiance::{IrradianceMap, Layer, Sample};
 use super::pieces::PieceLight;
 use super::stored::PackedNormal;
 use crate::integrator::Unreadable;
 use crate::integrator::bytes::{Reader, put};
+use crate::integrator::final_gather::FinalGather;
 use crate::math::PrimitiveId;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};

@@ -7,11 +7,12 @@
 //! where the light changes counts too, and the real area is measured for each size.
 
 use super::estimate::{Estimate, Measured, Spot, estimate, measure};
-use super::grid::{Grid, cell};
 use super::irradiance::Sample;
 use super::radius::Radii;
-use super::stored::{PackedNormal, Stored, facing, flat_extent, is_matt_somewhere};
+use super::stored::{PackedNormal, Stored, flat_extent, is_matt_somewhere};
 use crate::color::Rgb;
+use crate::integrator::carrier::facing;
+use crate::integrator::grid::{Grid, cell};
 use crate::math::Ray;
 use crate::math::frame::Frame;
 use crate::scene::Scene;

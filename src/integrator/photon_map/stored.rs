@@ -1,6 +1,7 @@
 //! Photons that have arrived, and who stores which of them.
 
 use crate::color::Rgb;
+use crate::integrator::carrier::facing;
 use crate::integrator::photon::{History, Onward, PhotonHit, Visitor};
 use crate::material::Optics;
 use crate::math::PrimitiveId;
@@ -129,15 +130,6 @@ pub(super) fn flat_extent(piece: &Piece) -> f64 {
     match piece {
         Piece::Body { flat, .. } => *flat,
         Piece::Flat { .. } | Piece::Large => f64::INFINITY,
-    }
-}
-
-/// The normal, turned to the side of `w`.
-pub(super) fn facing(normal: DVec3, w: DVec3) -> DVec3 {
-    if normal.dot(w) >= 0.0 {
-        normal
-    } else {
-        -normal
     }
 }
 

@@ -1,12 +1,12 @@
 //! What the estimates of the map say of photons that are laid out by hand, for [`crate::validation::extremes`].
 
 use super::estimate::{Spot, estimate, measure};
-use super::grid::Grid;
 use super::irradiance::Layer;
 use super::progressive::Progressive;
 pub(crate) use super::progressive::shrunk;
 use super::spots::World;
 use super::stored::Stored;
+use crate::integrator::grid::Grid;
 use crate::scene::Scene;
 use glam::DVec3;
 

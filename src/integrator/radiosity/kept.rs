@@ -88,6 +88,7 @@ impl RadiositySolution {
             mesh,
             vertices: Vertices { corners, values },
             fits: OnceLock::new(),
+            gather: OnceLock::new(),
             patches,
             residual,
             is_converged,

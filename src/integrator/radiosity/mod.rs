@@ -15,7 +15,7 @@
 //! refine    smaller elements             gather      Gauss and Seidel
 //! vertices  between elements             shoot       progressive refinement
 //! source    what light sources give      stochastic  all patches at once, nothing stored
-//! view      from the camera              rays        form factors by rays
+//! view      what views ask of it         rays        form factors by rays
 //! polygon   between polygons, on paper   hemicube    drawn onto half a cube
 //! kept      as bytes                      solution    what is kept
 //! insides   where no light is
@@ -46,6 +46,7 @@ mod vertices;
 mod view;
 
 use super::carrier::Carrier;
+use super::final_gather::{FinalGather, GatherSettings, View};
 use super::medium::Bodies;
 use super::requirements::{Feature, Features, Requirements, has_focused_light};
 use super::sources::Sources;
@@ -67,7 +68,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use system::{FormFactors, Patch, Row, Solved};
 use vertices::Vertices;
-use view::View;
 
 /// Bytes that a patch takes, with its faces, corners and light.
 const BYTES_PER_PATCH: u64 = 1024;
@@ -133,6 +133,9 @@ pub struct Radiosity {
     pub subdivision_depth: u32,
     /// How often a ray from the camera is followed through mirrors, glass and glossy surfaces.
     pub max_depth: u32,
+    /// Rays of each [final gather](super::final_gather), up to [`MOST_GATHER_RAYS`](super::final_gather::MOST_GATHER_RAYS); 0: views show
+    /// the light of elements as it is.
+    pub final_gather: u32,
     /// Bytes that all of it may take.
     pub memory: u64,
     /// What is done even if the scene does not require it.
@@ -149,6 +152,7 @@ impl Default for Radiosity {
             subdivision_threshold: 0.15,
             subdivision_depth: 3,
             max_depth: 8,
+            final_gather: 0,
             memory: 1 << 32,
             kept: Features::NONE,
         }
@@ -162,7 +166,7 @@ impl Integrator for Radiosity {
         context: &RenderContext<'_>,
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         let solution = self.solution(scene, context, &mut |_| {})?;
-        Ok(Box::new(self.look(scene, Arc::new(solution))))
+        Ok(Box::new(self.look(scene, Arc::new(solution), context.seed)))
     }
 
     fn solve(
@@ -191,7 +195,7 @@ impl Integrator for Radiosity {
     ) -> Result<Box<dyn RadianceEstimator + 's>, RenderError> {
         match solution {
             super::Solution::Radiosity(solution) if solution.fits(scene) => {
-                Ok(Box::new(self.look(scene, solution.clone())))
+                Ok(Box::new(self.look(scene, solution.clone(), context.seed)))
             }
             _ => self.prepare(scene, context),
         }
@@ -228,7 +232,12 @@ struct Sent {
 }
 
 impl Radiosity {
-    fn look<'s>(&self, scene: &'s Scene, solution: Arc<RadiositySolution>) -> View<'s> {
+    fn look<'s>(
+        &self,
+        scene: &'s Scene,
+        solution: Arc<RadiositySolution>,
+        seed: u64,
+    ) -> View<'s, RadiositySolution> {
         let requirements = Requirements::of(scene, self.kept);
         let carrier = Carrier {
             scene,
@@ -236,9 +245,19 @@ impl Radiosity {
             max_depth: self.max_depth,
         };
         let sources = Sources::required(scene, &requirements);
+        let gathers = self.final_gather > 0 && requirements.has(Feature::Bounces);
+        let gather = gathers.then(|| {
+            let settings = GatherSettings {
+                rays: self.final_gather,
+                max_depth: self.max_depth,
+                seed,
+            };
+            FinalGather::over(&*solution, scene, settings)
+        });
         View {
             viewer: Viewer { carrier, sources },
-            solution,
+            light: solution,
+            gather,
         }
     }
 
@@ -278,6 +297,7 @@ impl Radiosity {
             residual: sent.solved.residual,
             is_converged: sent.solved.is_converged,
             fits: OnceLock::from(true),
+            gather: OnceLock::new(),
             mesh,
         })
     }

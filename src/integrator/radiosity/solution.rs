@@ -4,7 +4,8 @@ use super::mesh::Mesh;
 use super::system::{Patch, Solved};
 use super::vertices::Vertices;
 use crate::color::Rgb;
-use std::sync::OnceLock;
+use crate::integrator::final_gather::FinalGather;
+use std::sync::{Arc, OnceLock};
 
 /// Part of the mean light of a scene: where there is less, differences are compared with so much.
 const DARKEST: f64 = 0.125;
@@ -16,6 +17,8 @@ pub struct RadiositySolution {
     pub(super) vertices: Vertices,
     /// Whether its faces are those of the scene, once somebody has seen to that.
     pub(super) fits: OnceLock<bool>,
+    /// What views have gathered with the settings of the first of them. Not written: any view finds it again.
+    pub(super) gather: OnceLock<Arc<FinalGather>>,
     /// Patches into which surfaces are cut.
     pub patches: u64,
     /// Part of all light that was still to be sent when the solver ended.
@@ -31,6 +34,7 @@ impl RadiositySolution {
             vertices: Vertices::new(mesh, &of_patches(mesh, patches, solved), size),
             mesh: mesh.clone(),
             fits: OnceLock::from(true),
+            gather: OnceLock::new(),
             patches: patches.len() as u64,
             residual: solved.residual,
             is_converged: false,

@@ -1,58 +1,113 @@
-//! From the camera to the solution: direct light and solved light at matt surfaces, everything else followed further.
+//! What views ask of the solution.
 
 use super::RadiositySolution;
+use super::mesh::{Cell, Mesh, parts};
 use crate::color::Rgb;
-use crate::integrator::path::Strategies;
-use crate::integrator::sources::Reach;
-use crate::integrator::viewer::{Asked, Seen, Viewer};
-use crate::integrator::{RadianceEstimator, RayCounts};
-use crate::material::Scattering;
-use crate::math::Ray;
-use crate::sampler::Sampler;
-use std::f64::consts::FRAC_1_PI;
-use std::sync::Arc;
+use crate::integrator::final_gather::{FinalGather, Places, SolvedLight, Spot};
+use crate::integrator::viewer::Behind;
+use crate::math::rng;
+use crate::scene::{Piece, Scene};
+use glam::{DVec2, DVec3};
+use std::sync::{Arc, OnceLock};
 
-/// The solution, and what looking at it needs.
-pub(super) struct View<'s> {
-    pub(super) viewer: Viewer<'s>,
-    pub(super) solution: Arc<RadiositySolution>,
-}
+/// Places for gathered light in a scene, about.
+const PLACES: f64 = 131_072.0;
 
-impl RadianceEstimator for View<'_> {
-    fn incident_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb {
-        let media = self.viewer.carrier.bodies.around(ray.origin);
-        let matt = |seen: &Seen<'_>, sampler: &Sampler, rays: &mut RayCounts| {
-            self.matt_radiance(seen, sampler, rays)
-        };
-        self.viewer
-            .light_along((ray, media), Asked::CAMERA, sampler, rays, matt)
-            .radiance
-    }
-}
+/// Cells of planes that are wider than this part of the scene's size hold none: they lie far outside.
+const WIDEST: f64 = 1.0 / 16.0;
 
-impl View<'_> {
-    /// Direct and solved light that the matt part of a surface sends back along the ray.
-    fn matt_radiance(&self, seen: &Seen<'_>, sampler: &Sampler, rays: &mut RayCounts) -> Rgb {
-        let met = seen.met;
-        let matt = Scattering {
-            sides: met.optics.scattering.sides,
-            lobes: &[],
-        };
-        if !matt.is_smooth() {
+/// Times a cell is halved at most for places.
+const MOST_HALVINGS: u32 = 12;
+
+impl SolvedLight for RadiositySolution {
+    const BY_PIECES: bool = false;
+    /// What shines through mirrors and glass is in the light of elements, so gathers must find it: the disk of the sun is in neither.
+    const BEHIND: Behind = Behind::AllButSun;
+
+    fn indirect(&self, _: &Scene, spot: &Spot<'_>, side: DVec3, _: bool) -> Rgb {
+        let Self { mesh, vertices, .. } = self;
+        let Some(place) = mesh.element_at(spot.hit, spot.point.position) else {
             return Rgb::BLACK;
-        }
-        let ways = (Reach::First, Strategies::LightsOnly);
-        let direct = self.viewer.direct(seen, &matt, ways, sampler, rays);
-        let RadiositySolution { mesh, vertices, .. } = &*self.solution;
-        let Some(place) = mesh.element_at(&met.hit, met.point.position) else {
-            return direct;
         };
-        let cell = &mesh.nodes[place.node as usize].cell;
-        let is_triangle = mesh.is_triangle(cell);
+        let is_triangle = mesh.is_triangle(&mesh.nodes[place.node as usize].cell);
         let solved = vertices.at(place.node, place.within, is_triangle);
-        let near = usize::from(met.point.normal_g.dot(seen.wo) < 0.0);
-        let sent = matt.sides[near].reflectance * solved[near]
-            + matt.sides[1 - near].transmittance * solved[1 - near];
-        direct + sent * FRAC_1_PI
+        solved[usize::from(spot.point.normal_g.dot(side) < 0.0)]
     }
+
+    fn focused(&self, _: &Scene, _: &Spot<'_>, _: DVec3, _: bool) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn knows_wholly(&self, _: &Piece) -> bool {
+        false
+    }
+
+    fn blur(&self, spot: &Spot<'_>) -> f64 {
+        let place = self.mesh.element_at(spot.hit, spot.point.position);
+        place.map_or(0.0, |place| {
+            self.mesh.nodes[place.node as usize].area.sqrt()
+        })
+    }
+
+    fn places(&self, scene: &Scene) -> Places {
+        places(&self.mesh, scene)
+    }
+
+    fn kept(&self) -> &OnceLock<Arc<FinalGather>> {
+        &self.gather
+    }
+}
+
+/// Places all over the surfaces, on both sides, in an order that knows nothing of rows.
+fn places(mesh: &Mesh, scene: &Scene) -> Places {
+    let widest = WIDEST * super::size_of_scene(scene);
+    let nodes = mesh.patches.iter().map(|node| &mesh.nodes[*node as usize]);
+    let nodes = nodes.filter(|node| {
+        let is_plane = mesh.charts[node.cell.chart as usize].is_plane();
+        !is_plane || node.area <= widest * widest
+    });
+    let area: f64 = nodes.clone().map(|node| node.area).sum();
+    let spacing = (2.0 * area / PLACES).sqrt();
+    if !(spacing > 0.0 && spacing.is_finite()) {
+        return Places::NONE;
+    }
+    // On what is smaller no record would be asked for.
+    let is_wide = |chart: u32| {
+        let chart = &mesh.charts[chart as usize].chart;
+        chart.area(DVec2::ZERO, DVec2::ONE) > spacing * spacing
+    };
+    let mut all = Vec::new();
+    for node in nodes.filter(|node| is_wide(node.cell.chart)) {
+        add_places(mesh, (&node.cell, MOST_HALVINGS), spacing, &mut all);
+    }
+    // The first of a cell of the cache is its place: not always that in the same corner.
+    let mut keyed: Vec<_> = (0_u64..).map(|at| rng::hash(&[at])).zip(all).collect();
+    keyed.sort_unstable_by_key(|(key, _)| *key);
+    Places {
+        spacing,
+        all: keyed.into_iter().map(|(_, place)| place).collect(),
+    }
+}
+
+/// Adds the middles of the parts of a cell that are no larger than `spacing` in the square, each for front and back.
+fn add_places(
+    mesh: &Mesh,
+    (cell, halvings): (&Cell, u32),
+    spacing: f64,
+    all: &mut Vec<(DVec3, DVec3)>,
+) {
+    let chart = &mesh.charts[cell.chart as usize].chart;
+    // A little more than that: halves of what is just larger would be four times as many.
+    let is_large = chart.area(cell.origin, cell.size) > 2.0 * spacing * spacing;
+    let is_triangle = mesh.is_triangle(cell);
+    if is_large && halvings > 0 {
+        for part in parts(cell, is_triangle) {
+            add_places(mesh, (&part, halvings - 1), spacing, all);
+        }
+        return;
+    }
+    let middle = if is_triangle { 1.0 / 3.0 } else { 0.5 };
+    let point = chart.point(cell.origin + cell.size * middle);
+    all.push((point.position, point.normal));
+    all.push((point.position, -point.normal));
 }

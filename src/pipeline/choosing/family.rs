@@ -129,6 +129,7 @@ impl Family {
                 set("subdivision-threshold", threshold);
                 set("subdivision-depth", depth);
                 set("hemicube-pixels", pixels);
+                set("final-gather", "auto");
                 set("recursion-depth", "8");
             }
         }

@@ -142,7 +142,8 @@ impl Chooser {
         let options = &self.base;
         let named = options.renderer.origin.beats(self.origin);
         let rays = &options.final_gather;
-        let gathers = rays.origin.beats(self.origin).then_some(rays.value.0 > 0);
+        let rays_named = rays.value.0.filter(|_| rays.origin.beats(self.origin));
+        let gathers = rays_named.map(|n| n > 0);
         let is_open = |family: &Family| {
             let renderer = family.renderer();
             let is_right = !named || renderer == options.renderer.value;

@@ -85,7 +85,7 @@ fn what_is_named_as_expressly_as_the_wish_stays() {
         (chosen.samples.value.get(), chosen.photon_area.value),
         (7, None)
     );
-    assert_eq!(chosen.final_gather.value.0, 0);
+    assert_eq!(chosen.final_gather.value.0, Some(0));
     let chosen = chooser.with(Family::Path, 0, None).unwrap();
     assert_eq!(chosen.max_depth.value, Some(3));
     // Without a judge, only what finds all light.

@@ -7,7 +7,8 @@ use super::looks::{largest, maps, mean_over, prepared, seen};
 use super::{Effort, Row, checks_of};
 use crate::color::Rgb;
 use crate::geometry::Shape;
-use crate::integrator::photon_map::{BYTES_PER_PHOTON, grid::Grid};
+use crate::integrator::grid::Grid;
+use crate::integrator::photon_map::BYTES_PER_PHOTON;
 use crate::integrator::{
     Integrator, Path, PhotonMapping, Progress, RadianceEstimator, RenderContext, RenderError,
 };

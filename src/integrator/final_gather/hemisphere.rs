@@ -7,8 +7,8 @@
 //!
 //! Where light comes through a door, few of the rays find it, and what they find differs from place to place. There the first rays tell
 //! only where light varies, and others are sent, more of them into cells where it does. That is decided by the first rays, which count
-//! where they find nothing uncertain, so light too small for them to find would be missing; but photons have found it, and where
-//! rays fall short of what photons say by more than [`BELIEVED`] allows more are sent too. Of a bright spot that gives half of the
+//! where they find nothing uncertain, so light too small for them to find would be missing; but the solution has found it, and where
+//! rays fall short of what it says by more than [`BELIEVED`] allows more are sent too. Of a bright spot that gives half of the
 //! light, 256 rays at first, over 400 gathers (`through_window` in the tests; share of the half-space that the spot covers: mean and
 //! standard deviation of the irradiance, rays):
 //!
@@ -16,7 +16,7 @@
 //! 10 %: 1.00 ± 0.029, 506     3 %: 1.00 ± 0.018, 643     1 %: 1.00 ± 0.015, 869     0.3 %: 1.00 ± 0.035, 2624     0.1 %: 1.00 ± 0.11, 3884
 //! ```
 //!
-//! Without what photons say the mean at 0.1 % is 0.60.
+//! Without what the solution says the mean at 0.1 % is 0.60.
 
 use super::guide::Guide;
 use crate::color::Rgb;

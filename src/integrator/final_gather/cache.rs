@@ -4,18 +4,18 @@
 //! and the clamping of radii to those of neighbours of [`Krivanek2006`](crate::references#krivanek2006).
 //!
 //! Ward's cache puts records where rays happen to come by, so what a picture shows depends on which came first. Here a picture
-//! must depend on neither the order of threads nor on pictures before it. So the *places* of records are fixed once, on the samples of the photon map,
+//! must depend on neither the order of threads nor on pictures before it. So the *places* of records are fixed once, all over the surfaces (of a photon map on its samples),
 //! independent of any camera, in levels: of each level one place in each cell of a grid that is twice as wide as that of the finer
 //! level, and the places of a level are places of all finer ones too. What a record holds is gathered when somebody first asks,
 //! and depends on nothing but its place; so does how far it is trusted. A question begins with the widest level
 //! and takes what is lacking in trust from finer ones, smoothly, so there are no seams. Views add records and the next
 //! view finds them, yet each view shows what it would show alone.
 
-use super::grid::{Grid, cell};
+use super::Places;
 use super::guide::Guide;
 use super::hemisphere::Gathered;
-use super::irradiance::IrradianceMap;
 use crate::color::Rgb;
+use crate::integrator::grid::{Grid, cell};
 use glam::{DVec3, Vec3};
 use std::sync::OnceLock;
 
@@ -135,12 +135,12 @@ impl IrradianceCache {
     /// Least cosine between normals.
     pub(super) const SAME_NORMAL: f64 = 0.9;
 
-    /// Room for records where the map has samples, in a scene of this size in metres round `center`.
-    pub(super) fn new(map: Option<&IrradianceMap>, center: DVec3, size: f64) -> Self {
-        let spacing = map.map_or(1.0, IrradianceMap::spacing);
-        let mut places: Vec<Place> = map
+    /// Room for records at these places, in a scene of this size in metres round `center`.
+    pub(super) fn new(places: Places, center: DVec3, size: f64) -> Self {
+        let spacing = places.spacing;
+        let mut places: Vec<Place> = places
+            .all
             .into_iter()
-            .flat_map(IrradianceMap::places)
             .map(|(position, normal)| Place {
                 position: (position - center).as_vec3(),
                 normal: normal.as_vec3(),
