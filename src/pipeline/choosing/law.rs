@@ -33,6 +33,8 @@ pub struct Law {
     pub bias: f64,
     /// Standard error of `bias`.
     pub bias_error: f64,
+    /// The part of it that is noise of the truth: it stays the same on all rungs.
+    pub judge_error: f64,
 }
 
 /// A law that was measured.
@@ -105,10 +107,13 @@ impl Law {
     pub fn climbed(&self, family: Family, rungs: u32) -> Self {
         let (cost, gain) = family.step();
         let rungs = i32::try_from(rungs).unwrap_or(i32::MAX);
+        let gain = gain.powi(rungs);
+        let judge = self.judge_error;
+        let own = (self.bias_error.powi(2) - judge.powi(2)).max(0.0).sqrt();
         Self {
             shared: self.shared * cost.powi(rungs),
-            bias: self.bias * gain.powi(rungs),
-            bias_error: self.bias_error * gain.powi(rungs),
+            bias: self.bias * gain,
+            bias_error: (own * gain).hypot(judge),
             ..*self
         }
     }
@@ -188,6 +193,7 @@ mod tests {
                 noise: 0.01,
                 bias: 0.01,
                 bias_error: 0.0,
+                judge_error: 0.0,
             },
         }
     }
@@ -226,6 +232,18 @@ mod tests {
         assert!((two.shared / known.law.shared - 64.0).abs() < 1e-9);
         // Nothing is promised beyond the top.
         assert_eq!(known.fastest_for(1e-4, None), None);
+    }
+
+    /// What a better map cannot mend is not promised of it: a truth that is known to no more than the wanted square.
+    #[test]
+    fn no_rung_is_surer_than_the_truth() {
+        let mut known = photons();
+        (known.law.bias_error, known.law.judge_error) = (0.005, 0.003);
+        assert_eq!(known.fastest_for(0.05, None), None);
+        let above = known.law.climbed(Family::PhotonMap, 30);
+        assert!((above.bias_error - 0.003).abs() < 1e-6, "{above:?}");
+        known.law.judge_error = 0.0;
+        assert!(known.fastest_for(0.05, None).is_some());
     }
 
     #[test]

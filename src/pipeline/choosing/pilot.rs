@@ -16,13 +16,17 @@ use crate::scene::Scene;
 const FIRST_SAMPLES: u32 = 2;
 /// Samples of each pixel at least, for a wanted error, however small the picture is.
 const FEWEST: f64 = 64.0;
-/// Samples of each pixel at most, as in the most careful check of a picture.
-const MOST_SAMPLES: u32 = 4096;
+/// Samples of each pixel at most.
+const MOST_SAMPLES: u32 = 1 << 18;
 /// Samples that a method takes of each pixel, and those of them that tell what the view costs once.
 const SAMPLES: u32 = 16;
 const COLD_SAMPLES: u32 = 2;
-/// The squared error of another method is to be known to this part of the squared error that is wanted.
+/// Samples that it takes at most, where fewer do not tell its noise well enough.
+const MOST_TRIED: u32 = 256;
+/// The squared error of another method is to be known to this part of the squared error that is wanted: as far as noise of the truth
+/// goes, and its own.
 const PRECISION: f64 = 0.15;
+const OWN_PRECISION: f64 = 0.05;
 /// Part of the wanted time for which the truth is sampled.
 const PART_OF_TIME: f64 = 0.03;
 /// Part of the samples of a whole path-traced picture that its pilot takes at most.
@@ -40,6 +44,8 @@ pub struct Pilot<'s> {
     pub seconds_of_sample: f64,
     /// Pixels of the picture for each of these.
     share: f64,
+    /// The squared error that is wanted, if one is.
+    wanted: Option<f64>,
 }
 
 impl<'s> Pilot<'s> {
@@ -77,9 +83,10 @@ impl<'s> Pilot<'s> {
                 // The next step takes as long as all before.
                 Wish::Seconds(seconds) => 2.0 * passed > PART_OF_TIME * seconds,
                 Wish::Error(error) => {
-                    let wanted = noise / (PRECISION * error * error * n_spots.sqrt());
+                    let is_known = truth.judge_error() <= PRECISION * error * error;
                     let whole = noise / (error * error) * n_pixels / n_spots;
-                    f64::from(samples) >= (2.0 * wanted).min(PART_OF_SAMPLES * whole).max(FEWEST)
+                    let n = f64::from(samples);
+                    n >= FEWEST && (is_known || n >= PART_OF_SAMPLES * whole)
                 }
             };
             if is_enough || samples >= MOST_SAMPLES {
@@ -101,6 +108,10 @@ impl<'s> Pilot<'s> {
             path,
             seconds_of_sample,
             share: n_pixels / n_spots,
+            wanted: match wish {
+                Wish::Error(error) => Some(error * error),
+                Wish::Seconds(_) => None,
+            },
         })
     }
 
@@ -128,15 +139,25 @@ impl<'s> Pilot<'s> {
         let context = viewing.context(viewing.cancel, &|_| {});
         let settings = everywhere(viewing);
         let mut shots = self.truth.emptied();
-        let mut sample = |n: u32| -> Result<f64, RenderError> {
+        let sample = |shots: &mut Spots, n: u32| -> Result<f64, RenderError> {
             shots.sample(&*prepared.estimator, camera, &settings, n, &context)?;
             Ok(now())
         };
-        let cold = sample(COLD_SAMPLES).map_err(|error| failure(&error))?;
-        let warm = sample(SAMPLES).map_err(|error| failure(&error))?;
+        let cold = sample(&mut shots, COLD_SAMPLES).map_err(|error| failure(&error))?;
+        let warm = sample(&mut shots, SAMPLES).map_err(|error| failure(&error))?;
         let each = (warm - cold) / f64::from(SAMPLES - COLD_SAMPLES);
         let once = (cold - begin - f64::from(COLD_SAMPLES) * each).max(0.0);
-        let noise = shots.noise();
+        let mut noise = shots.noise();
+        let mut n = SAMPLES;
+        let is_vague = |noise: SquaredError| {
+            let wanted = self.wanted;
+            wanted.is_some_and(|wanted| noise.standard_error > OWN_PRECISION * wanted)
+        };
+        while n < MOST_TRIED && is_vague(noise) {
+            n *= 2;
+            sample(&mut shots, n).map_err(|error| failure(&error))?;
+            noise = shots.noise();
+        }
         let seen = self.truth.error_of(&shots.luminances());
         let bias = without(seen, noise);
         Ok(Law {
@@ -145,9 +166,10 @@ impl<'s> Pilot<'s> {
             // proportion.
             begin: once * self.share.max(1.0).sqrt(),
             sample: each * self.share,
-            noise: noise.mean * f64::from(SAMPLES),
+            noise: noise.mean * f64::from(n),
             bias: bias.mean,
             bias_error: bias.standard_error,
+            judge_error: self.truth.judge_error().min(bias.standard_error),
         })
     }
 }
