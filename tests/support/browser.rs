@@ -42,6 +42,14 @@ impl Shot {
     }
 }
 
+impl Shot {
+    /// Red, green and blue of a pixel.
+    pub(crate) fn pixel(&self, x: usize, y: usize) -> [u8; 3] {
+        let first = 3 * (y * self.width + x);
+        std::array::from_fn(|channel| self.pixels[first + channel])
+    }
+}
+
 impl Browser {
     /// Starts a browser whose window is so large; `None` if there is none on this machine. What it saves goes to `downloads`.
     pub(crate) fn start(width: u32, height: u32, downloads: &Path) -> Option<Self> {
@@ -52,7 +60,7 @@ impl Browser {
         let name = NAMES.iter().find(runs)?;
         // It reads commands from descriptor 3 and answers on 4.
         let command = format!(
-            "exec {name} --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run \
+            "exec {name} --headless=new --no-sandbox --disable-gpu --enable-unsafe-swiftshader --disable-dev-shm-usage --no-first-run \
              --remote-debugging-pipe --user-data-dir=\"$1\" about:blank 3<&0 4>&1 </dev/null >/dev/null 2>&1"
         );
         let child = Command::new("sh")
