@@ -93,17 +93,22 @@ impl<T: OptionValue> Setting<T> {
         }
     }
 
-    /// Reads `text`; keeps the old value if its origin is stronger.
+    /// Reads `text`; keeps the old value if its origin is stronger. A default that is a word is named among what is allowed.
     pub(super) fn set(
         &mut self,
-        key: &'static str,
+        (key, default): (&'static str, &'static str),
         text: &str,
         origin: Origin,
     ) -> Result<(), SetError> {
-        let value = T::parse(text).map_err(|expected| SetError::Value {
-            key,
-            expected,
-            text: text.to_owned(),
+        let value = T::parse(text).map_err(|expected| {
+            let word = matches!(default, "auto" | "none").then(|| format!("`{default}`"));
+            let word = word.filter(|word| !expected.contains(word));
+            let word = word.map_or_else(String::new, |word| format!(", or {word}"));
+            SetError::Value {
+                key,
+                expected: expected + &word,
+                text: text.to_owned(),
+            }
         })?;
         if origin.rank() >= self.origin.rank() {
             *self = Self {

@@ -201,7 +201,7 @@ macro_rules! options {
             /// If there is no such option, or `text` is no value of it.
             pub fn set(&mut self, key: &str, text: &str, origin: Origin) -> Result<(), SetError> {
                 match key {
-                    $($key => self.$field.set($key, text, origin),)*
+                    $($key => self.$field.set(($key, $default), text, origin),)*
                     _ => Err(SetError::Unknown {
                         key: key.to_owned(),
                         nearest: nearest(key, TABLE.iter().map(|row| row.key)),

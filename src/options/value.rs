@@ -416,9 +416,8 @@ impl<T: OptionValue> OptionValue for Option<T> {
     fn parse(text: &str) -> Result<Self, String> {
         match text {
             "auto" | "none" => Ok(None),
-            _ => T::parse(text)
-                .map(Some)
-                .map_err(|expected| format!("{expected}, or `auto`")),
+            // Which of the two words fits is known by the default.
+            _ => T::parse(text).map(Some),
         }
     }
 }
