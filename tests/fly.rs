@@ -591,6 +591,24 @@ fn key_frames_in_the_file_beside_the_model_make_the_flight() {
     assert!(pixels(&bench.bytes("last.png")) == pixels(&bench.bytes(&frame("a.gif.frames", 4))));
 }
 
+/// A frame of key frames that ask for stops is the picture with so many more: the exposure of a film is that of its first frame here.
+#[test]
+fn key_frames_brighten_by_stops() {
+    let bench = Bench::new();
+    let keys = "--key time=0_eye=0,-4,1_target=0,0,1;time=1_stops=0;time=2_stops=3";
+    bench.succeed(&format!(
+        "fly m.rgg -o f {SMALL} {keys} --exposure -4 --flight-frames 3"
+    ));
+    let shown = |number: u32| pixels(&bench.bytes(&frame("f", number)));
+    assert_eq!(shown(0), shown(1));
+    bench.succeed(
+        &format!("render m.rgg -o p.png {SMALL} --eye 0,-4,1 --target 0,0,1 --exposure -1")
+            .replace(" --flicker 0", ""),
+    );
+    assert_eq!(shown(2), pixels(&bench.bytes("p.png")));
+    assert_ne!(shown(2), shown(1));
+}
+
 #[test]
 fn bad_paths_are_refused_with_what_is_wrong_and_where() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! What each frame of a film shows: where the camera stands, how far the model has grown, where the sun is.
+//! What each frame of a film shows: where the camera stands, how far the model has grown, where the sun is, how bright it is shown.
 
 use super::key::{KeyFrame, KeyFrames, SunPlace};
 use super::spline::{EvenSpeed, Spline, Track};
@@ -18,6 +18,8 @@ pub struct Moment {
     pub step: Option<f64>,
     /// Where the sun stands; `None`: as the options say.
     pub sun: Option<SunPlace>,
+    /// By how many photographic stops it is shown brighter than the film's exposure would show it.
+    pub stops: f64,
 }
 
 /// How fast a way through key frames is flown.
@@ -51,6 +53,7 @@ struct Tracks {
     fov: Option<Spline>,
     step: Option<Spline>,
     sun: Option<[Spline; 2]>,
+    stops: Option<Spline>,
     clock: Option<EvenSpeed>,
 }
 
@@ -123,6 +126,7 @@ impl Flight {
             view: self.start,
             step: None,
             sun: None,
+            stops: 0.0,
         };
         match &self.way {
             Way::Still => still,
@@ -207,6 +211,7 @@ impl Tracks {
             fov: curve(|key| key.fov.map(Angle::degrees)),
             step: curve(|key| key.step),
             sun: sun_curves(&said(keys, |key| key.sun)),
+            stops: curve(|key| key.stops),
         }
     }
 
@@ -228,6 +233,7 @@ impl Tracks {
                 azimuth: azimuth.at(time).rem_euclid(360.0),
                 elevation: elevation.at(time),
             }),
+            stops: self.stops.as_ref().map_or(0.0, |stops| stops.at(time)),
         }
     }
 }

@@ -32,10 +32,12 @@ pub struct KeyFrame {
     pub step: Option<f64>,
     /// Where the sun stands.
     pub sun: Option<SunPlace>,
+    /// By how many photographic stops it is shown brighter than the film's exposure would show it; -20 to 20.
+    pub stops: Option<f64>,
 }
 
 /// What a key frame can say.
-pub const NAMES: [&str; 6] = ["time", "eye", "target", "fov", "step", "sun"];
+pub const NAMES: [&str; 7] = ["time", "eye", "target", "fov", "step", "sun", "stops"];
 /// The most steps that a key frame may ask for.
 const MOST_STEPS: f64 = u32::MAX as f64;
 
@@ -71,6 +73,10 @@ impl KeyFrame {
                 }
                 _ => return wrong("AZIMUTH,ELEVATION in degrees with an elevation from 0 to 90"),
             },
+            "stops" => match one {
+                Some(stops) if (-20.0..=20.0).contains(&stops) => self.stops = Some(stops),
+                _ => return wrong("a number of photographic stops from -20 to 20"),
+            },
             _ => {
                 let hint = match nearest(name, NAMES) {
                     Some(near) => format!("did you mean `{near}`?"),
@@ -99,6 +105,9 @@ impl fmt::Display for KeyFrame {
         }
         if let Some(sun) = self.sun {
             write!(f, " sun={},{}", sun.azimuth, sun.elevation)?;
+        }
+        if let Some(stops) = self.stops {
+            write!(f, " stops={stops}")?;
         }
         Ok(())
     }
@@ -230,7 +239,7 @@ mod tests {
 
     #[test]
     fn the_text_form_is_read_as_it_is_written() {
-        let text = "time=0 eye=0,-9,2 target=0,0,1 fov=40; time=2.5 eye=1,2,3 step=4.5 sun=135,40";
+        let text = "time=0 eye=0,-9,2 target=0,0,1 fov=40; time=2.5 eye=1,2,3 step=4.5 sun=135,40 stops=-1.5";
         let keys = KeyFrames::parse(text).unwrap();
         assert_eq!(keys.to_string(), text);
         assert_eq!(keys.span(), (0.0, 2.5));
@@ -257,6 +266,7 @@ mod tests {
             ("time=0; time=1 step=-1", 1, "from 0 up"),
             ("time=0; time=1 step=1e30", 1, "from 0 up"),
             ("time=0; time=1 sun=10,91", 1, "0 to 90"),
+            ("time=0; time=1 stops=21", 1, "-20 to 20"),
             ("time=0; time=1 tagret=1,2,3", 1, "`target`"),
             ("time=0; eye=1,2,3", 1, "no `time`"),
             ("time=0; 1,2,3", 1, "NAME=VALUE"),

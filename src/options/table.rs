@@ -320,7 +320,7 @@ options! {
     orbit: bool = "false", "orbit", "", Fly, Flight, &[Fly];
     /// Turns the model once before the camera: flies round it, and takes the sun along
     turntable: bool = "false", "turntable", "", Fly, Flight, &[Fly];
-    /// Flies through key frames: `time=0 eye=0,-9,2 target=0,0,1; time=4 eye=5,-7,3`, each with any of `eye`, `target`, `fov`, `step`, `sun`; in the file one table `[[fly.key]]` for each
+    /// Flies through key frames: `time=0 eye=0,-9,2 target=0,0,1; time=4 eye=5,-7,3`, each with any of `eye`, `target`, `fov`, `step`, `sun`, `stops` (brighter than the film by so many); in the file one table `[[fly.key]]` for each
     key: Option<KeyFrames> = "none", "key", "KEYS", Fly, Flight, &[Fly];
     /// Flies through the key frames at an even speed; their times then only order them
     even_speed: bool = "false", "even-speed", "", Fly, Flight, &[Fly];

@@ -103,6 +103,7 @@ fn found(options: &Options, scene: &Scene) -> Result<Option<KeyFrames>, RouteErr
         let part = (key.time - span.0) / (span.1 - span.0);
         let frame = &mut frames[(part * last as f64).round() as usize];
         (frame.fov, frame.step, frame.sun) = (key.fov, key.step, key.sun);
+        frame.stops = key.stops;
     }
     Ok(KeyFrames::new(frames).ok())
 }

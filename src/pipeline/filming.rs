@@ -41,6 +41,13 @@ pub(super) struct Job {
     pub(super) key: String,
 }
 
+impl Job {
+    /// The factor for its radiance where that of the film is this one.
+    fn exposed(&self, film: f64) -> f64 {
+        film * exposing::factor(self.moment.stops)
+    }
+}
+
 /// A scene with the light that all cameras share.
 struct Set {
     key: ContentHash,
@@ -341,6 +348,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
         }
         let run = &*self.run;
         let hash = self.studio.seconds.time(world, Phase::Write, || {
+            let exposure = job.exposed(exposure);
             let picture = exposing::develop(&shot.image, reel.frame_format(), exposure);
             let mut texts = run.texts();
             texts.push(("Moment", describe(&job.moment)));
@@ -367,6 +375,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
             let mut film = Vec::new();
             let mut again = Vec::new();
             for (second, job) in (0..).zip(pair) {
+                let exposure = job.exposed(exposure);
                 film.push(reel.shown(world, job.frame, exposure)?);
                 let index = 2 * index + second;
                 let n_frames = 2 * pairs.len() as u64;

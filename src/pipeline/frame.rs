@@ -19,6 +19,9 @@ pub(super) fn describe(moment: &Moment) -> String {
     if let Some(sun) = moment.sun {
         text.push_str(&format!(" sun={},{}", sun.azimuth, sun.elevation));
     }
+    if moment.stops != 0.0 {
+        text.push_str(&format!(" stops={}", moment.stops));
+    }
     text
 }
 
