@@ -160,7 +160,7 @@ impl<'s> Laid<'s> {
             Solver::Stochastic => {
                 let rays = self.rays(means.n_rays);
                 let n_rays = u64::from(means.n_rays) * patches.len() as u64;
-                stochastic::solve(&patches, &rays, n_rays, tolerance, go_on)
+                stochastic::solve(&patches, &rays, n_rays, tolerance, context.cancel, go_on)
             }
         };
         of_fronts(&solved, steps)

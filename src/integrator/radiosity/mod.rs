@@ -352,7 +352,7 @@ impl Radiosity {
                 let n_sides = sides.filter(|side| side.scatters()).count() as u64;
                 let rays = self.rays(mesh, carrier, context.seed);
                 let n_rays = n_sides * u64::from(rays.n);
-                stochastic::solve(&patches, &rays, n_rays, TOLERANCE, |left| {
+                stochastic::solve(&patches, &rays, n_rays, TOLERANCE, context.cancel, |left| {
                     tell(context, left)
                 })
             }

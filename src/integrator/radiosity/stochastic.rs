@@ -7,7 +7,7 @@
 use super::rays::{CosineRays, cell_point, cosine_ray};
 use super::system::{Patch, Solved, first_sent, power, sent};
 use crate::color::Rgb;
-use crate::integrator::RayCounts;
+use crate::integrator::{CancelToken, RayCounts};
 use crate::material::Transport;
 use crate::math::rng;
 use crate::sampler::{Sampler, SamplerKind, Use};
@@ -29,14 +29,16 @@ const LEAST_SHARE: f64 = 1.0 / 64.0;
 const BLOCK: usize = 1 << 14;
 
 /// Solves with about `n_rays` rays, until less than the part `tolerance` of all light is left to shoot; `go_on` is told that part after
-/// each iteration and says whether to go on.
+/// each iteration and says whether to go on. Once `cancel` is set, no more rays are followed, and the answer is of no use.
 pub(super) fn solve(
     patches: &[Patch],
     shots: &CosineRays<'_, '_>,
     n_rays: u64,
     tolerance: f64,
+    cancel: &CancelToken,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Solved {
+    let shoot_all = |unshot: &[Rgb], way| shoot_all(patches, shots, unshot, way, cancel);
     let mut unshot = first_sent(patches);
     let all = power(patches, &unshot);
     let mut solved = Solved {
@@ -49,7 +51,7 @@ pub(super) fn solve(
     if all > 0.0 {
         // A few rays tell how much of what is shot comes back.
         let n = (n_rays as f64 * PILOT).ceil();
-        let gained = shoot_all(patches, shots, &unshot, (all / n, MOST_ITERATIONS));
+        let gained = shoot_all(&unshot, (all / n, MOST_ITERATIONS));
         (shot, thrown) = (all, power(patches, &thrown_by(patches, &gained)));
     }
     for iteration in 0..MOST_ITERATIONS {
@@ -60,7 +62,7 @@ pub(super) fn solve(
         // Rays are shared out over all that will ever be shot.
         let ever = all / (1.0 - thrown / shot).clamp(LEAST_SHARE, 1.0);
         let n = (n_rays as f64 * left / ever).ceil().max(1.0);
-        let gained = shoot_all(patches, shots, &unshot, (left / n, iteration));
+        let gained = shoot_all(&unshot, (left / n, iteration));
         unshot = thrown_by(patches, &gained);
         for (side, (gained, thrown)) in gained.into_iter().zip(&unshot).enumerate() {
             solved.irradiance[side] += gained;
@@ -99,6 +101,7 @@ fn shoot_all(
     shots: &CosineRays<'_, '_>,
     unshot: &[Rgb],
     (per_ray, iteration): (f64, u64),
+    cancel: &CancelToken,
 ) -> Vec<Rgb> {
     let mut shooters = Vec::new();
     // Rays are dealt out to the running sum of power, from a random start: none is favoured.
@@ -122,6 +125,7 @@ fn shoot_all(
     for block in shooters.chunks(BLOCK) {
         let found: Vec<Vec<(u32, Rgb)>> = block
             .par_iter()
+            .filter(|_| !cancel.is_cancelled())
             .map(|shooter| shoot(shots, shooter, iteration))
             .collect();
         for (side, power) in found.into_iter().flatten() {

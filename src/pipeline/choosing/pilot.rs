@@ -28,7 +28,7 @@ const MOST_TRIED: u32 = 256;
 const PRECISION: f64 = 0.15;
 const OWN_PRECISION: f64 = 0.05;
 /// Part of the wanted time for which the truth is sampled.
-const PART_OF_TIME: f64 = 0.03;
+const PART_OF_TIME: f64 = 0.05;
 /// Part of the samples of a whole path-traced picture that its pilot takes at most.
 const PART_OF_SAMPLES: f64 = 0.05;
 
@@ -77,7 +77,7 @@ impl<'s> Pilot<'s> {
             truth
                 .sample(&*judge, camera, &settings, samples, &context)
                 .map_err(|error| failure(&error))?;
-            let passed = world.now().saturating_sub(begin).as_secs_f64();
+            let passed = world.now().saturating_sub(ready).as_secs_f64();
             let noise = truth.noise().mean * f64::from(samples);
             let is_enough = match wish {
                 // The next step takes as long as all before.

@@ -118,7 +118,7 @@ fn a_white_patch_does_not_hold_up_solvers() {
     let left = (all - system::power(&patches, &solved.radiosity)).abs() / all;
     assert!(left < 2e-3, "{left}");
     let mut rounds = 0;
-    let thrown = stochastic::solve(&patches, &rays, 4096, 1e-3, |_| {
+    let thrown = stochastic::solve(&patches, &rays, 4096, 1e-3, &CancelToken::default(), |_| {
         rounds += 1;
         true
     });
