@@ -160,6 +160,82 @@ fn shooting_is_shown_on_the_way() {
     assert!(looks(&scene, &shown[0]) != looks(&scene, &solved));
 }
 
+/// What a mirror throws from a lamp is written apart, for gathers; files of before that end where it would begin are read as well, and
+/// then rays of gathers find it: the same light but for noise. All that is gathered is found again from the bytes.
+#[test]
+fn what_mirrors_throw_is_kept_apart() {
+    let lamp = Material::lambert(gray(0.0)).emitting(gray(20.0), gray(0.0));
+    let down = DAffine3::from_rotation_x(std::f64::consts::PI);
+    let upright = at(-1.0, 0.0, 0.5) * DAffine3::from_rotation_y(std::f64::consts::FRAC_PI_2);
+    let scene = Room::default()
+        .with(square(1.0), at(0.0, 0.0, 0.0), Material::lambert(gray(0.6)))
+        .with(square(1.0), upright, Material::mirror(gray(0.9)))
+        .with(square(0.8), at(0.0, 0.0, 1.5) * down, lamp)
+        .build();
+    let gathered = Radiosity {
+        final_gather: 64,
+        ..method()
+    };
+    let cancel = CancelToken::default();
+    let mean = |solution: &Solution| {
+        let view = gathered.view(&scene, solution, &context(&cancel)).unwrap();
+        let look = |i: u32| {
+            let from = DVec3::new(
+                f64::from(i % 16) * 0.1 - 0.8,
+                f64::from(i / 16) * 0.1 - 0.8,
+                0.1,
+            );
+            let mut sampler = Sampler::new(SamplerKind::OwenSobol, 7, i);
+            let ray = Ray::new(from, DVec3::NEG_Z);
+            view.incident_radiance(&ray, &mut sampler, &mut RayCounts::default())
+                .g
+        };
+        (0..256).map(look).sum::<f64>() / 256.0
+    };
+    let solution = gathered.solve(&scene, &context(&cancel)).unwrap();
+    let bytes = solution.to_bytes().unwrap();
+    let again = gathered.restore(&bytes).unwrap();
+    assert!(again.to_bytes().unwrap() == bytes);
+    assert_eq!(mean(&solution), mean(&again));
+    // As much light at the end is what was thrown: as many corners.
+    let plain = without_thrown(&bytes);
+    let old = gathered.restore(plain).unwrap();
+    let (new, old) = (mean(&solution), mean(&old));
+    assert!((new / old - 1.0).abs() < 0.02, "{new} {old}");
+    assert!(new != old);
+}
+
+/// The bytes up to the light at corners, which is followed by as much that was thrown.
+fn without_thrown(bytes: &[u8]) -> &[u8] {
+    let counted = |end: usize| {
+        let light = (bytes.len() - end) / 2;
+        let n = u64::from_le_bytes(bytes[end - 8..end].try_into().unwrap());
+        (light > 0 && light % 48 == 0 && n == (light / 48) as u64).then_some(end + light)
+    };
+    let end = (8..bytes.len()).rev().find_map(counted).unwrap();
+    &bytes[..end]
+}
+
+/// A memory for 16,000 cells, and a wish for more of them (C-20): it is told, not passed over.
+#[test]
+fn what_memory_keeps_from_being_split_is_told() {
+    let cancel = CancelToken::default();
+    let is_split = |threshold| {
+        let method = Radiosity {
+            subdivision_threshold: threshold,
+            subdivision_depth: 30,
+            memory: 16 << 20,
+            ..method()
+        };
+        match method.solve(&scene(0.3), &context(&cancel)).unwrap() {
+            Solution::Radiosity(solution) => solution.is_split,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(is_split(1e3));
+    assert!(!is_split(0.0));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 128, failure_persistence: None, ..ProptestConfig::default() })]
 

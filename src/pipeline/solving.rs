@@ -151,6 +151,14 @@ impl Studio<'_> {
                 .audience
                 .warned(&run.sources.map, &unfinished(solved.residual));
         }
+        if let Solution::Radiosity(solved) = &solution
+            && !solved.is_split
+        {
+            let memory = budget::readable(budget::memory(world, &run.options));
+            viewing
+                .audience
+                .warned(&run.sources.map, &coarser(solved.patches, &memory));
+        }
         if self.keep == Keep::All {
             self.solution = key.map(|key| (key, solution.clone()));
         }
@@ -169,6 +177,20 @@ fn unfinished(residual: f64) -> Diagnostics {
     found.push(Diagnostic {
         primary: None,
         ..Diagnostic::warning("not-converged", Span::default(), text).hint(hint)
+    });
+    found
+}
+
+/// Tells that patches could not be split as far as was wanted.
+fn coarser(patches: u64, memory: &str) -> Diagnostics {
+    let text = format!(
+        "radiosity is coarser than was wanted: there is no memory for more elements of its {patches} patches than {memory} hold"
+    );
+    let hint = "use more `--max-memory`, a larger `--subdivision-threshold` or a smaller `--subdivision-depth`";
+    let mut found = Diagnostics::default();
+    found.push(Diagnostic {
+        primary: None,
+        ..Diagnostic::warning("coarser", Span::default(), text).hint(hint)
     });
     found
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
+use understory::camera::Camera;
 use understory::diag::{Diagnostics, SourceMap};
 use understory::film::LinearImage;
 use understory::growth::Growth;
@@ -14,6 +15,7 @@ use understory::pipeline::studio::{Keep, Run, Studio};
 use understory::pipeline::viewing::Viewing;
 use understory::pipeline::viewpoint;
 use understory::pipeline::world::Machine;
+use understory::scene::Scene;
 
 /// Keeps what a model prints; a warning fails the test.
 #[derive(Default)]
@@ -91,15 +93,27 @@ impl Opened {
         self.listener.printed.lock().unwrap().clone()
     }
 
+    /// Its scene, and the camera that looks at it.
+    #[allow(dead_code, reason = "for benchmarks")]
+    pub(crate) fn scene(&self) -> (Arc<Scene>, Camera) {
+        let (mut studio, run) = self.open();
+        self.built(&mut studio, &run)
+    }
+
+    fn built(&self, studio: &mut Studio<'_>, run: &Run) -> (Arc<Scene>, Camera) {
+        let scene = studio
+            .build(run, &CancelToken::default())
+            .unwrap_or_else(|failure| panic!("{}: {failure:?}", self.path.display()));
+        let view = viewpoint::of_scene(&run.options, &scene);
+        let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
+        (scene, camera)
+    }
+
     /// Grows it and draws it.
     pub(crate) fn draw(&self) -> Drawn {
         let (mut studio, run) = self.open();
         let cancel = CancelToken::default();
-        let scene = studio
-            .build(&run, &cancel)
-            .unwrap_or_else(|failure| panic!("{}: {failure:?}", self.path.display()));
-        let view = viewpoint::of_scene(&run.options, &scene);
-        let camera = viewpoint::camera(&run.sources, &run.options, &view).unwrap();
+        let (scene, camera) = self.built(&mut studio, &run);
         let viewing = Viewing {
             world: &self.world,
             audience: &*self.listener,

@@ -88,14 +88,22 @@ pub(super) trait SolvedLight: Send + Sync {
     /// Whether it is known by [`Piece`]s.
     const BY_PIECES: bool;
 
+    /// Whether rays that gather count light of sources that nobody can ask for, as of endless planes that shine.
+    const HAS_UNASKED: bool;
+
     /// Which sources behind mirrors and glass count for rays that gather: those whose light is not [focused](Self::focused).
-    const BEHIND: Behind;
+    fn behind(&self) -> Behind;
 
     /// Indirect irradiance of the side of a point that this normal is of, W/m² per channel. What is one of many in a sum may be coarse.
     fn indirect(&self, scene: &Scene, spot: &Spot<'_>, side: DVec3, is_summed: bool) -> Rgb;
 
     /// Irradiance of light that mirrors and glass throw there from sources, if it is held apart; W/m² per channel.
     fn focused(&self, scene: &Scene, spot: &Spot<'_>, side: DVec3, is_summed: bool) -> Rgb;
+
+    /// Both, as a view shows them that does not gather.
+    fn solved(&self, scene: &Scene, spot: &Spot<'_>, side: DVec3, is_summed: bool) -> Rgb {
+        self.indirect(scene, spot, side, is_summed) + self.focused(scene, spot, side, is_summed)
+    }
 
     /// Whether a piece is so small that its light is known only as a whole.
     fn knows_wholly(&self, piece: &Piece) -> bool;
@@ -196,10 +204,7 @@ impl OneSide<'_> {
 
 /// The scattering that a ray of many comes from, whose point has asked sources already.
 fn last_of_many<L: SolvedLight>(position: DVec3) -> Option<LastScattering> {
-    match L::BEHIND {
-        Behind::Nothing => None,
-        Behind::All | Behind::AllButSun => Some(LastScattering::asked_at(position)),
-    }
+    L::HAS_UNASKED.then(|| LastScattering::asked_at(position))
 }
 
 impl<L: SolvedLight> View<'_, L> {

@@ -35,7 +35,7 @@ pub(in crate::integrator) struct View<'s, L> {
 pub(super) enum Asker {
     /// The camera: all of it.
     Camera,
-    /// A matt surface: what has been scattered into many directions on its way, and of sources what [`SolvedLight::BEHIND`] says.
+    /// A matt surface: what has been scattered into many directions on its way, and of sources what [`SolvedLight::behind`] says.
     Gather {
         /// The first vertex whose random numbers the ray may use.
         vertex: u32,
@@ -81,7 +81,7 @@ impl<L: SolvedLight> View<'_, L> {
             Asker::Gather { vertex, last, .. } => Asked {
                 first_vertex: vertex,
                 is_camera: false,
-                behind: L::BEHIND,
+                behind: self.light.behind(),
                 last,
             },
         };
@@ -200,22 +200,22 @@ impl<L: SolvedLight> View<'_, L> {
             if share.is_black() {
                 continue;
             }
+            let focused = || self.light.focused(scene, &spot, side.normal, is_summed);
             let found = match (indirect, &self.gather) {
                 (Indirect::Gathered(cached), Some(gather)) => {
                     let spot = (side, seen.gone);
-                    self.accurate_irradiance(gather, spot, cached[nth], sampler, rays)
+                    self.accurate_irradiance(gather, spot, cached[nth], sampler, rays) + focused()
                 }
                 (Indirect::OneRay(vertex), _) => {
                     let goes_on = matches!(asker, Asker::Camera);
                     let last = |wi| Some(scattering(seen, &matt, wi, reach));
-                    self.irradiance_by_ray(side, (vertex, goes_on), last, sampler, rays)
+                    self.irradiance_by_ray(side, (vertex, goes_on), last, sampler, rays) + focused()
                 }
                 (Indirect::Gathered(_) | Indirect::Solved, _) => {
-                    self.light.indirect(scene, &spot, side.normal, is_summed)
+                    self.light.solved(scene, &spot, side.normal, is_summed)
                 }
             };
-            let focused = self.light.focused(scene, &spot, side.normal, is_summed);
-            scattered += *share * (found + focused);
+            scattered += *share * found;
         }
         direct + scattered * FRAC_1_PI
     }

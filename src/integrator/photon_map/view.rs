@@ -14,7 +14,11 @@ const NEAR: f64 = 2.0;
 
 impl SolvedLight for PhotonSolution {
     const BY_PIECES: bool = true;
-    const BEHIND: Behind = Behind::Nothing;
+    const HAS_UNASKED: bool = false;
+
+    fn behind(&self) -> Behind {
+        Behind::Nothing
+    }
 
     fn indirect(&self, scene: &Scene, spot: &Spot<'_>, side: DVec3, is_summed: bool) -> Rgb {
         stored(self.global.as_ref(), scene, spot, side, is_summed)

@@ -1,7 +1,7 @@
 //! The solution as bytes, and back.
 //!
 //! Number of patches, residual, whether it converged; the faces; the grid of each; of each cell its children and its patch; the
-//! corners of elements; the light at corners. What cells are follows from that, to the last bit. Whoever reads trusts nothing.
+//! corners of elements; the light at corners, and, if there is such light, what mirrors and glass threw of it. What cells are follows from that, to the last bit. Whoever reads trusts nothing.
 
 use super::RadiositySolution;
 use super::mesh::{Cell, Grid, Mesh, NONE, Node, faces, parts};
@@ -58,6 +58,10 @@ impl RadiositySolution {
             let light = light.to_array();
             light.iter().for_each(|c| put(&mut out, c.to_le_bytes()));
         }
+        for light in self.focused.iter().flatten().flatten() {
+            let light = light.to_array();
+            light.iter().for_each(|c| put(&mut out, c.to_le_bytes()));
+        }
         out
     }
 
@@ -83,8 +87,16 @@ impl RadiositySolution {
         if !corners.as_flattened().iter().all(is_known) {
             return Err(Unreadable("an element has corners that there are not"));
         }
+        // Files of before that part was held apart end here too.
+        let focused = (!reader.0.is_empty()).then(|| {
+            let values = (0..n).map(|_| Ok([reader.light()?, reader.light()?]));
+            values.collect::<Result<Vec<_>, Unreadable>>()
+        });
+        let focused = focused.transpose()?;
         reader.end()?;
         Ok(Self {
+            focused,
+            is_split: true,
             mesh,
             vertices: Vertices { corners, values },
             fits: OnceLock::new(),

@@ -62,8 +62,9 @@ use rayon::prelude::*;
 use rays::CosineRays;
 use refine::Refinement;
 pub use solution::RadiositySolution;
-use solution::{light_of, of_patches};
+use solution::{focused_on_patches, light_of, of_patches};
 use source::Lighting;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use system::{FormFactors, Patch, Row, Solved};
@@ -123,6 +124,8 @@ pub struct Radiosity {
     pub solver: Option<Solver>,
     /// Pixels along an edge of a hemicube; a row made of rays has a quarter of its square of them.
     pub hemicube_pixels: u32,
+    /// Hemicubes along each side of a patch or element, at least 1; GroIMP has one, in the middle.
+    pub hemicubes: u32,
     /// Edge of the hemicube, metres: what is nearer than half of it is not drawn; `None`: very near.
     pub hemicube_size: Option<f64>,
     /// Where form factors come from; the stochastic solver uses them only for the elements.
@@ -153,6 +156,7 @@ impl Default for Radiosity {
             subdivision_depth: 3,
             max_depth: 8,
             final_gather: 0,
+            hemicubes: CUBES,
             memory: 1 << 32,
             kept: Features::NONE,
         }
@@ -231,6 +235,16 @@ struct Sent {
     is_shot: bool,
 }
 
+/// The light of elements by node, front and back.
+struct Received {
+    /// All that views do not ask for.
+    irradiance: Vec<[Rgb; 2]>,
+    /// The part of it that mirrors and glass threw there from sources.
+    focused: Vec<[Rgb; 2]>,
+    /// Whether they were split as far as was wanted.
+    is_split: bool,
+}
+
 impl Radiosity {
     fn look<'s>(
         &self,
@@ -287,12 +301,17 @@ impl Radiosity {
             requirements: &requirements,
         };
         let sent = self.solve_patches(&mesh, &light, context, early)?;
-        let irradiance = self.elements(&mut mesh, &sent, &light, context);
+        let found = self.elements(&mut mesh, &sent, &light, context);
         if context.cancel.is_cancelled() {
             return Err(RenderError::Cancelled { partial: None });
         }
+        let size = size_of_scene(scene);
+        let is_focused = found.focused.iter().flatten().any(|l| !l.is_black());
+        let focused = is_focused.then(|| Vertices::new(&mesh, &found.focused, size).values);
         Ok(RadiositySolution {
-            vertices: Vertices::new(&mesh, &irradiance, size_of_scene(scene)),
+            vertices: Vertices::new(&mesh, &found.irradiance, size),
+            focused,
+            is_split: found.is_split,
             patches: mesh.patches.len() as u64,
             residual: sent.solved.residual,
             is_converged: sent.solved.is_converged,
@@ -415,62 +434,88 @@ impl Radiosity {
             FormFactorMethod::Rays => Box::new(rays),
             FormFactorMethod::Hemicube => {
                 let (pixels, size) = (self.hemicube_pixels, self.hemicube_size);
-                Box::new(Hemicubes::new(mesh, carrier, seed, pixels, CUBES, size))
+                let cubes = self.hemicubes.max(1);
+                Box::new(Hemicubes::new(mesh, carrier, seed, pixels, cubes, size))
             }
             FormFactorMethod::Analytic => Box::new(NearForms::new(rays)),
         }
     }
 
-    /// Splits elements where light changes fast, and finds the light of all of them that views do not ask for, front and back by
-    /// node.
+    /// Splits elements where light changes fast, and finds the light of all of them that views do not ask for.
     fn elements(
         &self,
         mesh: &mut Mesh,
-        solution: &Sent,
+        sent: &Sent,
         light: &Light<'_, '_>,
         context: &RenderContext<'_>,
-    ) -> Vec<[Rgb; 2]> {
-        let carrier = light.carrier;
-        let Sent {
-            patches, solved, ..
-        } = solution;
-        let gathered = |mesh: &Mesh, first: usize| {
-            let factors = self.factors(mesh, carrier, context.seed);
-            let lighting = self.lighting(mesh, light, context);
-            let light_of = |at: usize| {
-                let node = &mesh.nodes[at];
-                [0, 1].map(|side| {
-                    let is_wanted = node.children == NONE
-                        && patches[node.patch as usize].sides[side].is_needed();
-                    if !is_wanted || context.cancel.is_cancelled() {
-                        return Rgb::BLACK;
-                    }
-                    let row = factors.row(at as u32, side);
-                    row.gather(&solved.radiosity) + lighting.stray(at as u32, side)
-                })
-            };
-            (first..mesh.nodes.len())
-                .into_par_iter()
-                .map(light_of)
-                .collect()
-        };
-        let mut irradiance = if solution.is_shot && patches.len() <= FEW_PATCHES {
-            gathered(mesh, 0)
+    ) -> Received {
+        let patches = &sent.patches;
+        let first = if sent.is_shot && patches.len() <= FEW_PATCHES {
+            self.received(mesh, 0, (sent, light), context)
         } else {
-            of_patches(mesh, patches, solved)
+            let all = of_patches(mesh, patches, &sent.solved).into_iter();
+            all.zip(focused_on_patches(mesh, patches)).collect()
+        };
+        let (mut irradiance, focused): (Vec<_>, Vec<_>) = first.into_iter().unzip();
+        // What is found for new elements is split in two as it comes.
+        let focused = RefCell::new(focused);
+        let gathered = |mesh: &Mesh, first: usize| {
+            let found = self.received(mesh, first, (sent, light), context);
+            let (all, more): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+            focused.borrow_mut().extend(more);
+            all
         };
         let refinement = Refinement {
             threshold: self.subdivision_threshold,
             depth: self.subdivision_depth,
             most: (self.memory / BYTES_PER_PATCH).min(u64::from(u32::MAX) / 2) as usize,
-            size: size_of_scene(carrier.scene),
+            size: size_of_scene(light.carrier.scene),
             cancel: context.cancel,
         };
-        if patches.len() <= FEW_PATCHES {
-            let light = light_of(patches, solved);
-            refine::refine(mesh, &mut irradiance, &refinement, &light, gathered);
+        let is_split = patches.len() > FEW_PATCHES || {
+            let light = light_of(patches, &sent.solved);
+            refine::refine(mesh, &mut irradiance, &refinement, &light, gathered)
+        };
+        Received {
+            irradiance,
+            focused: focused.into_inner(),
+            is_split,
         }
-        irradiance
+    }
+
+    /// The light of elements from a number on, front and back: all that views do not ask for, and the part of it that mirrors and
+    /// glass threw there.
+    fn received(
+        &self,
+        mesh: &Mesh,
+        first: usize,
+        (sent, light): (&Sent, &Light<'_, '_>),
+        context: &RenderContext<'_>,
+    ) -> Vec<([Rgb; 2], [Rgb; 2])> {
+        let factors = self.factors(mesh, light.carrier, context.seed);
+        let lighting = self.lighting(mesh, light, context);
+        let side = |at: usize, side: usize| {
+            let node = &mesh.nodes[at];
+            let is_wanted =
+                node.children == NONE && sent.patches[node.patch as usize].sides[side].is_needed();
+            if !is_wanted || context.cancel.is_cancelled() {
+                return (Rgb::BLACK, Rgb::BLACK);
+            }
+            let row = factors.row(at as u32, side);
+            let stray = lighting.stray(at as u32, side);
+            (
+                row.gather(&sent.solved.radiosity) + stray.all,
+                stray.focused,
+            )
+        };
+        let both = |at: usize| {
+            let (front, back) = (side(at, 0), side(at, 1));
+            ([front.0, back.0], [front.1, back.1])
+        };
+        (first..mesh.nodes.len())
+            .into_par_iter()
+            .map(both)
+            .collect()
     }
 
     /// The solver that is asked for, or that suits so many patches.

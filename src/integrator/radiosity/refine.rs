@@ -25,14 +25,14 @@ pub(super) struct Refinement<'a> {
 }
 
 /// Splits elements and finds the light of the new ones by `gathered`, of nodes from a number on, front and back. `light` tells the
-/// light of each patch that differences are compared with, W/m². Stops where there would be too many.
+/// light of each patch that differences are compared with, W/m². Stops where there would be too many, and tells whether it did not.
 pub(super) fn refine(
     mesh: &mut Mesh,
     irradiance: &mut Vec<[Rgb; 2]>,
     refinement: &Refinement<'_>,
     light: &[f64],
     gathered: impl Fn(&Mesh, usize) -> Vec<[Rgb; 2]>,
-) {
+) -> bool {
     let areas = mesh
         .patches
         .iter()
@@ -51,28 +51,34 @@ pub(super) fn refine(
             })
             .collect();
         if wanted.is_empty() || refinement.cancel.is_cancelled() {
-            return;
+            return true;
         }
         let start = mesh.nodes.len();
         if start + 4 * wanted.len() > refinement.most {
-            return;
+            return false;
         }
         wanted.into_iter().for_each(|node| mesh.split(node));
-        balance(mesh, refinement);
+        let is_balanced = balance(mesh, refinement);
         irradiance.extend(gathered(mesh, start));
+        if !is_balanced {
+            return false;
+        }
     }
+    true
 }
 
-/// Splits what has neighbours more than one split smaller.
-fn balance(mesh: &mut Mesh, refinement: &Refinement<'_>) {
+/// Splits what has neighbours more than one split smaller; whether there was room.
+fn balance(mesh: &mut Mesh, refinement: &Refinement<'_>) -> bool {
     loop {
         let large: Vec<u32> = crowded(mesh, refinement.size)
             .into_iter()
             .filter(|node| !mesh.is_tiny(*node))
             .collect();
-        let n_cells = mesh.nodes.len() + 4 * large.len();
-        if large.is_empty() || n_cells > refinement.most || refinement.cancel.is_cancelled() {
-            return;
+        if large.is_empty() || refinement.cancel.is_cancelled() {
+            return true;
+        }
+        if mesh.nodes.len() + 4 * large.len() > refinement.most {
+            return false;
         }
         for node in large {
             if mesh.nodes[node as usize].children == NONE {

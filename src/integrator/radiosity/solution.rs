@@ -15,6 +15,8 @@ const DARKEST: f64 = 0.125;
 pub struct RadiositySolution {
     pub(super) mesh: Mesh,
     pub(super) vertices: Vertices,
+    /// The part of the light at corners that mirrors and glass threw there from sources; `None`: nobody knows, or there is none.
+    pub(super) focused: Option<Vec<[Rgb; 2]>>,
     /// Whether its faces are those of the scene, once somebody has seen to that.
     pub(super) fits: OnceLock<bool>,
     /// What views have gathered with the settings of the first of them. Not written: any view finds it again.
@@ -25,6 +27,8 @@ pub struct RadiositySolution {
     pub residual: f64,
     /// Whether that is as little as it was to be: not so where nothing is ever lost.
     pub is_converged: bool,
+    /// Whether elements were split as far as was wanted: not so where there was no memory for more. Not written.
+    pub is_split: bool,
 }
 
 impl RadiositySolution {
@@ -38,6 +42,8 @@ impl RadiositySolution {
             patches: patches.len() as u64,
             residual: solved.residual,
             is_converged: false,
+            is_split: true,
+            focused: None,
         }
     }
 }
@@ -47,9 +53,18 @@ pub(super) fn of_patches(mesh: &Mesh, patches: &[Patch], solved: &Solved) -> Vec
     let mut irradiance = vec![[Rgb::BLACK; 2]; mesh.nodes.len()];
     for (at, (patch, node)) in patches.iter().zip(&mesh.patches).enumerate() {
         irradiance[*node as usize] =
-            [0, 1].map(|side| solved.irradiance[2 * at + side] + patch.sides[side].stray);
+            [0, 1].map(|side| solved.irradiance[2 * at + side] + patch.sides[side].stray.all);
     }
     irradiance
+}
+
+/// The part of it that mirrors and glass threw there from sources.
+pub(super) fn focused_on_patches(mesh: &Mesh, patches: &[Patch]) -> Vec<[Rgb; 2]> {
+    let mut focused = vec![[Rgb::BLACK; 2]; mesh.nodes.len()];
+    for (patch, node) in patches.iter().zip(&mesh.patches) {
+        focused[*node as usize] = [0, 1].map(|side| patch.sides[side].stray.focused);
+    }
+    focused
 }
 
 /// The light of each patch that differences on it are compared with: irradiance of its brighter side, direct light included, mean

@@ -2,7 +2,7 @@
 
 use super::mesh::{Mesh, Node};
 use super::rays::{cell_point, cosine_ray};
-use super::system::{Patch, PatchSide};
+use super::system::{Patch, PatchSide, Stray};
 use crate::color::Rgb;
 use crate::integrator::carrier::{Carrier, frame_of, lobes_of, survivor};
 use crate::integrator::mis::power_heuristic;
@@ -69,7 +69,7 @@ impl Lighting<'_, '_> {
                 };
                 if own.is_needed() && !self.cancel.is_cancelled() {
                     own.stray = self.stray(*node, side);
-                    own.source = self.direct(*node, side) + own.stray;
+                    own.source = self.direct(*node, side) + own.stray.all;
                 }
                 own
             });
@@ -167,32 +167,34 @@ impl Lighting<'_, '_> {
     }
 
     /// Irradiance of a side of a cell from sources on ways on which they are not asked, W/m².
-    pub(super) fn stray(&self, node: u32, side: usize) -> Rgb {
+    pub(super) fn stray(&self, node: u32, side: usize) -> Stray {
         let stream = rng::hash(&[self.seed, STRAY, u64::from(node), side as u64]);
         let cell = &self.mesh.nodes[node as usize].cell;
-        let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
+        let (mut sum, mut weights) = (Stray::default(), 0.0);
         let mut rays = RayCounts::default();
         for index in 0..self.n_stray {
             let mut sampler = Sampler::new(SamplerKind::OwenSobol, stream, index);
             let at = sampler.point(Use::Choice);
             let at = cell_point(self.mesh, self.carrier, cell, side, at);
             let ray = cosine_ray(&at.point, side, sampler.point(Use::Direction));
-            sum += self.stray_radiance(&ray, &mut sampler, &mut rays) * (PI * at.weight);
+            let found = self.stray_radiance(&ray, &mut sampler, &mut rays);
+            sum.all += found.all * (PI * at.weight);
+            sum.focused += found.focused * (PI * at.weight);
             weights += at.weight;
         }
         if weights > 0.0 {
-            sum / weights
-        } else {
-            Rgb::BLACK
+            sum.all = sum.all / weights;
+            sum.focused = sum.focused / weights;
         }
+        sum
     }
 
     /// Radiance along a ray from sources that nobody asks for it; without the disk of the sun, which hardly any ray would meet.
-    fn stray_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Rgb {
+    fn stray_radiance(&self, ray: &Ray, sampler: &mut Sampler, rays: &mut RayCounts) -> Stray {
         let carrier = self.carrier;
         let mut media = carrier.bodies.around(ray.origin);
         let mut ray = *ray;
-        let (mut radiance, mut throughput, mut compression) = (Rgb::BLACK, Rgb::WHITE, 1.0);
+        let (mut radiance, mut throughput, mut compression) = (Stray::default(), Rgb::WHITE, 1.0);
         let mut last = Last::Straight(Receiver {
             position: ray.origin,
             normal: None,
@@ -208,7 +210,11 @@ impl Lighting<'_, '_> {
                         .sky_pdf_solid_angle(ray.direction, Reach::First)
                 };
                 let sky = self.sources.sky_radiance(ray.direction);
-                return radiance + throughput * sky * last.share(&|_| pdf());
+                let found = throughput * sky * last.share(&|_| pdf());
+                // Land below the horizon is asked for by nobody, so every ray counts it.
+                let is_focused = last.is_focused() && pdf() > 0.0;
+                radiance.add(found, is_focused);
+                return radiance;
             };
             let emission = met.optics.emission[usize::from(!met.point.is_front)];
             if !emission.is_black() {
@@ -216,7 +222,7 @@ impl Lighting<'_, '_> {
                     let sources = self.sources;
                     sources.emitter_pdf_solid_angle(&met.point, from, Reach::First)
                 };
-                radiance += throughput * emission * last.share(&ask);
+                radiance.add(throughput * emission * last.share(&ask), last.is_focused());
             }
             if met.optics.scattering.is_matt() {
                 return radiance;
@@ -235,10 +241,9 @@ impl Lighting<'_, '_> {
                     advice: None,
                 };
                 let ways = Strategies::Both;
-                radiance += throughput
-                    * self
-                        .sources
-                        .direct(&shading, Reach::First, ways, sampler, rays);
+                let sources = self.sources;
+                let direct = sources.direct(&shading, Reach::First, ways, sampler, rays);
+                radiance.add(throughput * direct, false);
             }
             let transport = Transport::Radiance;
             let onward = carrier.scatter(&met, wo, &mut media, transport, sampler);
@@ -268,6 +273,11 @@ enum Last {
 }
 
 impl Last {
+    /// Whether what shines at the end of the ray is thrown there by mirrors and glass.
+    fn is_focused(&self) -> bool {
+        matches!(self, Self::Mirrored)
+    }
+
     /// The part of light at the end of the ray that counts, given the density with which it is asked for.
     fn share(&self, asked: &dyn Fn(&Receiver) -> f64) -> f64 {
         match self {

@@ -16,10 +16,29 @@ pub(super) struct PatchSide {
     pub(super) transmittance: Rgb,
     /// Irradiance from light sources, W/m².
     pub(super) source: Rgb,
-    /// The part of it that views do not ask for at the point they see, W/m².
-    pub(super) stray: Rgb,
+    /// The part of it that views do not ask for at the point they see.
+    pub(super) stray: Stray,
     /// Whether it is known that no light ever falls on it.
     pub(super) is_dark: bool,
+}
+
+/// Light from sources on ways on which they are not asked, W/m² on a surface or W/(m² sr) along a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Stray {
+    /// All of it.
+    pub(super) all: Rgb,
+    /// What mirrors and glass throw: rays of views that gather leave that out, for they would find a few bright points.
+    pub(super) focused: Rgb,
+}
+
+impl Stray {
+    /// Adds some of it.
+    pub(super) fn add(&mut self, light: Rgb, is_focused: bool) {
+        self.all += light;
+        if is_focused {
+            self.focused += light;
+        }
+    }
 }
 
 impl PatchSide {

@@ -130,8 +130,13 @@ impl Vertices {
         corners.filter_map(|corner| self.values.get(*corner as usize))
     }
 
-    /// Irradiance of front and back at a place in an element.
-    pub(super) fn at(&self, node: u32, within: DVec2, is_triangle: bool) -> [Rgb; 2] {
+    /// Front and back at a place in an element, of such values at corners.
+    pub(super) fn between(
+        &self,
+        values: &[[Rgb; 2]],
+        (node, within): (u32, DVec2),
+        is_triangle: bool,
+    ) -> [Rgb; 2] {
         let DVec2 { x, y } = within;
         let weights = if is_triangle {
             [1.0 - x - y, x, y, 0.0].map(|weight| weight.max(0.0))
@@ -140,7 +145,7 @@ impl Vertices {
         };
         let mut sum = [Rgb::BLACK; 2];
         for (corner, weight) in self.corners[node as usize].iter().zip(weights) {
-            if let Some(value) = self.values.get(*corner as usize) {
+            if let Some(value) = values.get(*corner as usize) {
                 sum[0] += value[0] * weight;
                 sum[1] += value[1] * weight;
             }

@@ -21,21 +21,31 @@ const MOST_HALVINGS: u32 = 12;
 
 impl SolvedLight for RadiositySolution {
     const BY_PIECES: bool = false;
-    /// What shines through mirrors and glass is in the light of elements, so gathers must find it: the disk of the sun is in neither.
-    const BEHIND: Behind = Behind::AllButSun;
+    const HAS_UNASKED: bool = true;
 
-    fn indirect(&self, _: &Scene, spot: &Spot<'_>, side: DVec3, _: bool) -> Rgb {
-        let Self { mesh, vertices, .. } = self;
-        let Some(place) = mesh.element_at(spot.hit, spot.point.position) else {
-            return Rgb::BLACK;
-        };
-        let is_triangle = mesh.is_triangle(&mesh.nodes[place.node as usize].cell);
-        let solved = vertices.at(place.node, place.within, is_triangle);
-        solved[usize::from(spot.point.normal_g.dot(side) < 0.0)]
+    /// Where it is not known which part of the light of elements mirrors and glass threw there, gathers must find that part: the disk of
+    /// the sun is in neither.
+    fn behind(&self) -> Behind {
+        if self.focused.is_some() {
+            Behind::Nothing
+        } else {
+            Behind::AllButSun
+        }
     }
 
-    fn focused(&self, _: &Scene, _: &Spot<'_>, _: DVec3, _: bool) -> Rgb {
-        Rgb::BLACK
+    fn indirect(&self, scene: &Scene, spot: &Spot<'_>, side: DVec3, is_summed: bool) -> Rgb {
+        let all = self.solved(scene, spot, side, is_summed);
+        let focused = self.focused(scene, spot, side, is_summed);
+        (all - focused).map(|light| light.max(0.0))
+    }
+
+    fn focused(&self, _: &Scene, spot: &Spot<'_>, side: DVec3, _: bool) -> Rgb {
+        let focused = self.focused.as_ref();
+        focused.map_or(Rgb::BLACK, |focused| self.between(focused, spot, side))
+    }
+
+    fn solved(&self, _: &Scene, spot: &Spot<'_>, side: DVec3, _: bool) -> Rgb {
+        self.between(&self.vertices.values, spot, side)
     }
 
     fn knows_wholly(&self, _: &Piece) -> bool {
@@ -55,6 +65,19 @@ impl SolvedLight for RadiositySolution {
 
     fn kept(&self) -> &OnceLock<Arc<FinalGather>> {
         &self.gather
+    }
+}
+
+impl RadiositySolution {
+    /// What such values at corners come to at a point of a side.
+    fn between(&self, values: &[[Rgb; 2]], spot: &Spot<'_>, side: DVec3) -> Rgb {
+        let Self { mesh, vertices, .. } = self;
+        let Some(place) = mesh.element_at(spot.hit, spot.point.position) else {
+            return Rgb::BLACK;
+        };
+        let is_triangle = mesh.is_triangle(&mesh.nodes[place.node as usize].cell);
+        let both = vertices.between(values, (place.node, place.within), is_triangle);
+        both[usize::from(spot.point.normal_g.dot(side) < 0.0)]
     }
 }
 
