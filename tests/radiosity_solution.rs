@@ -210,7 +210,7 @@ fn without_thrown(bytes: &[u8]) -> &[u8] {
     let counted = |end: usize| {
         let light = (bytes.len() - end) / 2;
         let n = u64::from_le_bytes(bytes[end - 8..end].try_into().unwrap());
-        (light > 0 && light % 48 == 0 && n == (light / 48) as u64).then_some(end + light)
+        (light > 0 && light.is_multiple_of(48) && n == (light / 48) as u64).then_some(end + light)
     };
     let end = (8..bytes.len()).rev().find_map(counted).unwrap();
     &bytes[..end]

@@ -1,7 +1,7 @@
 //! How large kernels are.
 //!
 //! Neighbours are found by kiddo's k-d tree, which is the right tool where it is not known how far away they are; where it is known, the
-//! [grid](super::grid) is. Trees that never change take any number of coincident points; those that can be changed refuse them.
+//! [grid](crate::integrator::grid) is. Trees that never change take any number of coincident points; those that can be changed refuse them.
 
 use super::stored::Stored;
 use crate::math::functions::{exp, ln};
