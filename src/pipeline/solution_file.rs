@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 pub const MAGIC: &[u8; 12] = b"understory\x1a\n";
 
 /// The version of the format, counted up with each change.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// No basis is larger than this many bytes.
 const LARGEST_BASIS: u64 = 1 << 20;

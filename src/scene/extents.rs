@@ -51,6 +51,8 @@ pub enum Piece {
         first: PrimitiveId,
         /// So far from any of its points, in metres, its surface is about flat where it is not an edge.
         flat: f64,
+        /// About the area of its surface, m²: that of what it would be if it were stretched evenly.
+        area: f64,
     },
     /// Anything else.
     Large,
@@ -165,9 +167,11 @@ impl Scene {
             && group.solids[index].form != UnitShape::Disk
         {
             let solid = &group.solids[index];
+            let to_world = to_world * solid.to_unit.inverse();
             return Piece::Body {
                 first: primitive,
-                flat: flat_extent(solid.form, &(to_world * solid.to_unit.inverse())),
+                flat: flat_extent(solid.form, &to_world),
+                area: about_area(solid.form, &to_world),
             };
         }
         if items.len() > FEW {
@@ -225,6 +229,26 @@ fn flat_extent(form: UnitShape, to_world: &DAffine3) -> f64 {
         UnitShape::Frustum(_) | UnitShape::Disk => FLAT_SHARE * x.min(y),
         // The middle one: a wall is flat however thin it is.
         UnitShape::Cube => x.max(y).min(x.max(z)).min(y.max(z)),
+    }
+}
+
+/// About the area of the surface of a unit shape, placed in the world, m².
+fn about_area(form: UnitShape, to_world: &DAffine3) -> f64 {
+    let m = to_world.matrix3;
+    let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(DVec3::length);
+    match form {
+        UnitShape::Sphere => 4.0 / 3.0 * PI * (x * y + y * z + z * x),
+        UnitShape::Frustum(frustum) => {
+            let (base, top) = (frustum.base, frustum.top);
+            let is_closed = frustum
+                .caps
+                .map(|is_there| if is_there { 1.0 } else { 0.0 });
+            let caps = base * base * is_closed[0] + top * top * is_closed[1];
+            let slope = z.hypot((base - top) * 0.5 * (x + y));
+            PI * ((base + top) * 0.5 * (x + y) * slope + caps * x * y)
+        }
+        UnitShape::Disk => PI * x * y,
+        UnitShape::Cube => 8.0 * (x * y + y * z + z * x),
     }
 }
 
@@ -388,7 +412,8 @@ mod tests {
         };
         assert!((area - 4.0 * PI).abs() < 1e-9);
         assert!(
-            matches!(scene.piece(PrimitiveId(2)), Piece::Body { first: PrimitiveId(2), flat } if (flat - 0.15).abs() < 1e-9)
+            matches!(scene.piece(PrimitiveId(2)), Piece::Body { first: PrimitiveId(2), flat, area }
+                if (flat - 0.15).abs() < 1e-9 && (area - PI).abs() < 1e-9)
         );
         assert!((scene.area_of(PrimitiveId(0)) - 6.0).abs() < 1e-9);
         assert!((scene.area_of(PrimitiveId(1)) - 4.0 * PI).abs() < 1e-9);

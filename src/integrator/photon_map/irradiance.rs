@@ -6,8 +6,10 @@
 //!
 //! Where kernels differ in size ([`spots`](super::spots)) there is a layer of samples for each size. Fine ones win where they are.
 
+use super::crossings::area;
 use super::estimate::Hidden;
 use super::pieces::{PieceLight, small};
+use super::pool::Pool;
 use super::stored::PackedNormal;
 use crate::color::Rgb;
 use crate::integrator::carrier::facing;
@@ -115,6 +117,8 @@ pub(super) struct IrradianceMap {
     pub(super) layers: Vec<Layer>,
     /// Sorted by key.
     pub(super) pieces: Vec<PieceLight>,
+    /// What pieces share that expect few photons.
+    pub(super) pool: Pool,
     /// Places on the surfaces as far apart as kernels of the usual size need, if not those of the layers.
     pub(super) places: Vec<(Vec3, PackedNormal)>,
 }
@@ -229,9 +233,25 @@ impl IrradianceMap {
         let Some(first) = small(piece, self.radius) else {
             return Rgb::BLACK;
         };
-        let key = (first, normal.dot(point.normal_g) < 0.0);
-        let found = self.pieces.binary_search_by_key(&key, |piece| piece.key);
-        found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance)
+        let is_back = normal.dot(point.normal_g) < 0.0;
+        let own = || {
+            let key = (first, is_back);
+            let found = self.pieces.binary_search_by_key(&key, |piece| piece.key);
+            found.map_or(Rgb::BLACK, |at| self.pieces[at].irradiance)
+        };
+        let is_inside = is_back && matches!(piece, Piece::Body { .. });
+        let cell = self.pool.cell(point.position - self.center);
+        let Some(cell) = cell.filter(|_| !is_inside) else {
+            return own();
+        };
+        let share = cell.own_share(area(piece));
+        if share >= 1.0 {
+            own()
+        } else if share > 0.0 {
+            own() * share + cell.irradiance(normal) * (1.0 - share)
+        } else {
+            cell.irradiance(normal)
+        }
     }
 
     /// Whether the piece is so small that its light is known as a whole.

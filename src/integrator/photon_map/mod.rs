@@ -13,6 +13,7 @@
 //! stored      which photons are stored              radius      how large kernels are
 //! spots       where irradiance is sampled           estimate    irradiance over the real area
 //! irradiance  the samples, asked by views           pieces      leaves smaller than the kernel
+//! pool        light that needles share              crossings   their area, counted by lines
 //! progressive passes in the memory of one           view        what views ask of the maps
 //! trials      estimates from photons laid out by hand
 //!                                                   solution    all of it, kept and as bytes
@@ -22,9 +23,11 @@
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
 
+mod crossings;
 mod estimate;
 mod irradiance;
 mod pieces;
+mod pool;
 mod progressive;
 mod radius;
 mod solution;
@@ -48,6 +51,7 @@ use crate::math::{Bounds3, rng};
 use crate::scene::Scene;
 use glam::DVec3;
 use irradiance::IrradianceMap;
+use pieces::PiecePower;
 use progressive::Progressive;
 pub use solution::PhotonSolution;
 use spots::World;
@@ -56,7 +60,7 @@ use std::sync::{Arc, OnceLock};
 use stored::{Collector, Stored, Wanted};
 
 /// Bytes that a stored photon takes while the maps are made: itself, its copies in lists that are joined and sorted.
-pub const BYTES_PER_PHOTON: u64 = 3 * size_of::<Stored>() as u64;
+pub const BYTES_PER_PHOTON: u64 = (size_of::<Stored>() + 2 * size_of::<PiecePower>()) as u64;
 
 /// Up to so many photons are followed without asking whether they will fit, and so many tell it.
 const PLANNED: u64 = 1 << 20;

@@ -11,7 +11,8 @@
 //! later ones find places; what these missed is made up for.
 
 use super::irradiance::{IrradianceMap, Layer, SPACING};
-use super::pieces::{PieceLight, split_off_pieces, together};
+use super::pieces::{PiecePower, over_area, split_off_pieces, together};
+use super::pool::Pool;
 use super::radius::Radii;
 use super::spots::{
     Key, SpotLayer, SpotLight, World, anywhere, cells, newly_found, scene_size, spots,
@@ -31,7 +32,9 @@ pub(super) struct Progressive<'s> {
     usual: f64,
     /// The coarsest first; radii are those of the first pass.
     layers: Vec<SpotLayer>,
-    pieces: Vec<PieceLight>,
+    /// Their power, and how many photons brought it.
+    pieces: Vec<PiecePower>,
+    n_on_pieces: u64,
     places: Vec<(Vec3, PackedNormal)>,
     /// Cells of the coarsest layer in which there are places, sorted.
     known: Vec<Key>,
@@ -51,7 +54,9 @@ impl<'s> Progressive<'s> {
         let radii = Radii::new(&photons, area, scene_size(world.scene))?;
         let last = shrunk(n_passes);
         let usual = radii.usual * last;
+        let n_photons = photons.len();
         let (pieces, photons) = split_off_pieces(world.scene, photons, usual);
+        let n_on_pieces = (n_photons - photons.len()) as u64;
         let places = if radii.largest > radii.usual {
             anywhere((world.scene, &photons), usual * SPACING)
         } else {
@@ -76,13 +81,16 @@ impl<'s> Progressive<'s> {
             n_passes,
             layers,
             pieces,
+            n_on_pieces,
             shrunk: 1.0,
         })
     }
 
     /// Adds the photons of a pass, counted from 1; the first was that of [`begin`](Self::begin).
     pub(super) fn add(&mut self, pass: u32, photons: Vec<Stored>) {
+        let n_photons = photons.len();
         let (pieces, mut photons) = split_off_pieces(self.world.scene, photons, self.usual);
+        self.n_on_pieces += (n_photons - photons.len()) as u64;
         self.pieces = together(&self.pieces, &pieces);
         let now = shrunk(pass);
         let has_shrunk = now < self.shrunk;
@@ -128,11 +136,14 @@ impl<'s> Progressive<'s> {
             let samples = layer.spots.iter().map(SpotLight::sample);
             Layer::new(samples.collect(), layer.spacing)
         });
+        let World { scene, center } = self.world;
+        let pool = Pool::new(scene, center, &self.pieces, self.n_on_pieces, self.usual);
         IrradianceMap {
-            center: self.world.center,
+            center,
             radius: self.usual,
             layers: layers.collect(),
-            pieces: self.pieces,
+            pieces: over_area(scene, &self.pieces),
+            pool,
             places: self.places,
         }
     }

@@ -1,18 +1,19 @@
 //! The maps of a scene as bytes, and back.
 //!
 //! Little-endian numbers, one after the other: photons emitted and stored, then each map as its middle, its size of pieces, its layers
-//! of samples, its pieces and its places. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
+//! of samples, its pieces, what pieces share, and its places. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
 //! its surroundings), of which there are fewer than photons. Numbers that no solution has are refused.
 
 use super::estimate::Hidden;
 use super::irradiance::{IrradianceMap, Layer, Sample};
 use super::pieces::PieceLight;
+use super::pool::{Cell, Pool};
 use super::stored::PackedNormal;
 use crate::integrator::Unreadable;
 use crate::integrator::bytes::{Reader, put};
 use crate::integrator::final_gather::FinalGather;
 use crate::math::PrimitiveId;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::{Arc, OnceLock};
 
 /// Bytes of a sample from which nothing is hidden.
@@ -26,6 +27,9 @@ const PLACE: usize = 18;
 
 /// Bytes of a piece.
 const PIECE: usize = 33;
+
+/// Bytes of a cell of pieces.
+const CELL: usize = 88;
 
 /// The most layers that a map has.
 const MOST_LAYERS: u32 = 64;
@@ -99,11 +103,25 @@ fn put_map(out: &mut Vec<u8>, map: &IrradianceMap) {
         let light = piece.irradiance.to_array();
         light.iter().for_each(|c| put(out, c.to_le_bytes()));
     }
+    put_pool(out, &map.pool);
     put(out, (map.places.len() as u64).to_le_bytes());
     for (position, normal) in &map.places {
         let position = position.to_array();
         position.iter().for_each(|c| put(out, c.to_le_bytes()));
         normal.0.iter().for_each(|c| put(out, c.to_le_bytes()));
+    }
+}
+
+fn put_pool(out: &mut Vec<u8>, pool: &Pool) {
+    let frame = pool.low.to_array().into_iter().chain([pool.edge]);
+    frame.for_each(|number| put(out, number.to_le_bytes()));
+    put(out, (pool.cells.len() as u64).to_le_bytes());
+    for cell in &pool.cells {
+        put(out, cell.begin.to_le_bytes());
+        put(out, cell.level.to_le_bytes());
+        let light = cell.lobes.iter().flat_map(|lobe| lobe.to_array());
+        let numbers = [cell.whole].into_iter().chain(light);
+        numbers.for_each(|number| put(out, number.to_le_bytes()));
     }
 }
 
@@ -139,6 +157,7 @@ impl Reader<'_> {
         if !pieces.is_sorted_by(|a, b| a.key < b.key) {
             return Err(Unreadable("its pieces are not in order"));
         }
+        let pool = self.pool()?;
         let n_places = self.count(PLACE)?;
         let places = (0..n_places).map(|_| Ok((self.vec3()?, self.normal()?)));
         let places = places.collect::<Result<Vec<_>, _>>()?;
@@ -147,6 +166,7 @@ impl Reader<'_> {
             radius,
             layers,
             pieces,
+            pool,
             places,
         })
     }
@@ -179,6 +199,36 @@ impl Reader<'_> {
             return Err(Unreadable("a sample has negative light or no size"));
         }
         Ok(Sample::of((position, normal, irradiance, radius, hidden)))
+    }
+
+    fn pool(&mut self) -> Result<Pool, Unreadable> {
+        let (low, edge) = (self.dvec3()?, self.f64()?);
+        let n = self.count(CELL)?;
+        let cells = (0..n).map(|_| self.cell());
+        let pool = Pool {
+            low,
+            edge,
+            cells: cells.collect::<Result<_, _>>()?,
+        };
+        if pool.is_sound() {
+            Ok(pool)
+        } else {
+            Err(Unreadable("its cells of pieces are not in order"))
+        }
+    }
+
+    fn cell(&mut self) -> Result<Cell, Unreadable> {
+        let (begin, level, whole) = (self.u64()?, self.u32()?, self.f32()?);
+        let mut lobes = [Vec3::ZERO; 6];
+        for lobe in &mut lobes {
+            *lobe = self.vec3()?;
+        }
+        Ok(Cell {
+            begin,
+            level,
+            whole,
+            lobes,
+        })
     }
 
     fn piece(&mut self) -> Result<PieceLight, Unreadable> {

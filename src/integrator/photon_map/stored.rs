@@ -5,6 +5,8 @@ use crate::integrator::carrier::facing;
 use crate::integrator::photon::{History, Onward, PhotonHit, Visitor};
 use crate::material::Optics;
 use crate::math::PrimitiveId;
+#[cfg(test)]
+use crate::scene::SurfacePoint;
 use crate::scene::{Piece, Scene};
 use glam::{DVec3, Vec3};
 
@@ -54,11 +56,7 @@ impl Stored {
         // Alpha is in the scattering that the picture multiplies with; the light itself is what arrives before alpha.
         let power = hit.power / hit.optics.alpha;
         let normal = facing(hit.point.normal_g, hit.wo);
-        let (kind, first) = match on {
-            Piece::Flat { first, .. } => (Kind::Flat, first.0),
-            Piece::Body { first, .. } => (Kind::Body, first.0),
-            Piece::Large => (Kind::Large, 0),
-        };
+        let (kind, first) = kind(&on);
         Self {
             position: (hit.point.position - center).as_vec3(),
             normal: PackedNormal::new(normal),
@@ -78,6 +76,18 @@ impl Stored {
             is_front: true,
             power: Vec3::splat(power as f32),
             piece: [0, 0],
+        }
+    }
+
+    /// A photon at a point of a piece, relative to the origin, that came to the side of this normal: for trials.
+    #[cfg(test)]
+    pub(super) fn on(scene: &Scene, point: &SurfacePoint, side: DVec3, power: f64) -> Self {
+        let (kind, first) = kind(&scene.piece(point.primitive));
+        Self {
+            kind,
+            is_front: side.dot(point.normal_g) > 0.0,
+            piece: [(first >> 32) as u32, first as u32],
+            ..Self::at(point.position, side, power)
         }
     }
 
@@ -122,6 +132,15 @@ impl Stored {
             Kind::Body => flat_extent(&self.piece(scene)),
             Kind::Flat | Kind::Large => f64::INFINITY,
         }
+    }
+}
+
+/// What a piece is, and the number of its first primitive.
+fn kind(piece: &Piece) -> (Kind, u64) {
+    match piece {
+        Piece::Flat { first, .. } => (Kind::Flat, first.0),
+        Piece::Body { first, .. } => (Kind::Body, first.0),
+        Piece::Large => (Kind::Large, 0),
     }
 }
 
