@@ -413,7 +413,7 @@ mod tests {
         assert!((area - 4.0 * PI).abs() < 1e-9);
         assert!(
             matches!(scene.piece(PrimitiveId(2)), Piece::Body { first: PrimitiveId(2), flat, area }
-                if (flat - 0.15).abs() < 1e-9 && (area - PI).abs() < 1e-9)
+                if (flat - 0.15).abs() < 1e-9 && (area - 34.0 / 3.0 * PI).abs() < 1e-9)
         );
         assert!((scene.area_of(PrimitiveId(0)) - 6.0).abs() < 1e-9);
         assert!((scene.area_of(PrimitiveId(1)) - 4.0 * PI).abs() < 1e-9);

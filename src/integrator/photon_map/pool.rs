@@ -464,7 +464,7 @@ mod tests {
     /// With half a photon they share; with 64 times as many, in passes, they have their own light.
     #[test]
     fn what_leaves_have_gets_better_with_passes() {
-        let (n, scene) = (1500, cloud(1500, false));
+        let (n, scene) = (3000, cloud(3000, false));
         let [few, many] = [1, 64].map(|n_passes| errors(&scene, n, &map(&scene, n, 0.5, n_passes)));
         assert!(
             few[1] < 0.1 * few[2] && many[1] < 0.5 * few[1],
