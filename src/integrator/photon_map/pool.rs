@@ -90,7 +90,8 @@ impl Pool {
     ) -> Self {
         let bounds = scene.bounds();
         let edge = bounds.diagonal().max_element();
-        if lights.is_empty() || !(edge > 0.0) {
+        let is_extended = edge > 0.0;
+        if lights.is_empty() || !is_extended {
             return Self::default();
         }
         let mut pool = Self {
@@ -128,7 +129,7 @@ impl Pool {
         let is_cell = |cell: &Cell| {
             let lobes = &cell.lobes;
             cell.level <= DEEPEST
-                && cell.begin % places(cell.level) == 0
+                && cell.begin.is_multiple_of(places(cell.level))
                 && cell.whole > 0.0
                 && lobes.iter().all(|lobe| lobe.min_element() >= 0.0)
         };
