@@ -930,6 +930,45 @@ fn a_room_without_a_solution_is_told() {
     assert!(residual > 0.0 && residual <= 1e-3, "{residual}");
 }
 
+/// A bead that next to no photon meets, beside a ball of glass that thousands do, and a lamp that sends hardly any, are told with what to do.
+#[test]
+fn what_too_few_photons_stand_for_is_told() {
+    let look = |bead: &str, dim: &str, photons: &str| {
+        let bench = Bench::new(&format!(
+            "protected void init() [ Axiom ==> [ Box(0.1, 4, 4) ]\n\
+             [ Translate(0, 0, 1) Sphere(0.5).(setShader(new Glass(1.5))) ]\n\
+             [ Translate(1, 0, 1) Sphere({bead}).(setShader(new Glass(1.5))) ]\n\
+             [ Translate(0, 1, 4) LightNode().(setLight(new PointLight().(setPower(100)))) ]\n\
+             [ Translate(0, 0, 3) LightNode().(setLight(new PointLight().(setPower({dim})))) ]; ]\n"
+        ));
+        let line = "render m.rgg -o m.png --size 8x8 --samples 1 --renderer photon";
+        let output = bench.run(&format!("{line} {photons}"));
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    let photons = "--global-photons 20000 --caustic-photons 20000";
+    let message = look("0.2", "1", photons);
+    assert!(!message.contains("fewer than 100 photons"), "{message}");
+    let message = look("0.002", "1", photons);
+    let told = "mirrors and glass that were met by fewer than 100 photons: 1 of 2 (";
+    assert!(
+        message.contains(told) && message.contains("`--caustic-photons"),
+        "{message}"
+    );
+    assert!(!message.contains("light sources"), "{message}");
+    let message = look(
+        "0.2",
+        "1e-9",
+        "--global-photons 1000 --caustic-photons 20000",
+    );
+    let told = "light sources that sent fewer than 100 photons: 1 of 2 (";
+    assert!(
+        message.contains(told) && message.contains("use `--global-photons"),
+        "{message}"
+    );
+    assert!(!message.contains("mirrors and glass"), "{message}");
+}
+
 #[test]
 fn plants_are_numbered_and_their_errors_reached() {
     let bench = Bench::new(

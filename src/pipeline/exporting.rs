@@ -69,6 +69,7 @@ impl Making<'_> {
 
         self.audience.begins("preparing");
         let solved = studio.solve(run, &scene, &viewing)?;
+        solved.warn(self.audience, &run.sources.map);
         let Solution::Radiosity(solution) = &solved.solution else {
             return Err(Failure::World("there is no light on surfaces".into()));
         };

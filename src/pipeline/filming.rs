@@ -240,6 +240,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
         }
         self.making.audience.begins("preparing");
         let solved = self.studio.solve(self.run, &scene, &viewing)?;
+        solved.warn(self.making.audience, &self.run.sources.map);
         self.done.solution = solved.facts;
         self.set = Some(Set {
             key: job.scene,

@@ -1,5 +1,6 @@
 //! The stage between scene and view: the light that all cameras share, kept, read or solved.
 
+use super::audience::Audience;
 use super::budget;
 use super::content_hash::ContentHash;
 use super::failure::Failure;
@@ -9,8 +10,9 @@ use super::store::SolutionTarget;
 use super::studio::{Keep, Run, Studio};
 use super::viewing::Viewing;
 use super::world::{Entry, World};
-use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::diag::{Diagnostic, Diagnostics, SourceMap, Span};
 use crate::integrator::Solution;
+use crate::integrator::photon_map::{CAUSTIC_PHOTONS, Coverage, ENOUGH, PhotonSolution};
 use crate::options::value::Renderer;
 use crate::options::{Options, Stage};
 use crate::scene::Scene;
@@ -53,6 +55,17 @@ pub struct Solved {
     pub solution: Solution,
     /// Where it came from.
     pub facts: SolutionFacts,
+    /// What it lacks, if it was solved for this: not told yet.
+    pub warnings: Vec<Diagnostics>,
+}
+
+impl Solved {
+    /// Tells people what it lacks.
+    pub fn warn(&self, audience: &dyn Audience, sources: &SourceMap) {
+        for warning in &self.warnings {
+            audience.warned(sources, warning);
+        }
+    }
 }
 
 impl Studio<'_> {
@@ -98,6 +111,10 @@ impl Studio<'_> {
             }
             _ => self.kept_or_solved(run, scene, viewing, early)?,
         };
+        let warnings = match origin {
+            SolutionOrigin::Made => lacks(&solution, viewing),
+            SolutionOrigin::Kept | SolutionOrigin::Read => Vec::new(),
+        };
         if let (Some(target), Some(basis), Some(content)) =
             (&files.save, &basis, solution.to_bytes())
         {
@@ -119,7 +136,11 @@ impl Studio<'_> {
                 ..SolutionFacts::default()
             },
         };
-        Ok(Solved { solution, facts })
+        Ok(Solved {
+            solution,
+            facts,
+            warnings,
+        })
     }
 
     fn kept_or_solved(
@@ -144,25 +165,24 @@ impl Studio<'_> {
         let solution = self
             .seconds
             .time(world, Phase::Prepare, || viewing.solve(scene, early))?;
-        if let Solution::Radiosity(solved) = &solution
-            && !solved.is_converged
-        {
-            viewing
-                .audience
-                .warned(&run.sources.map, &unfinished(solved.residual));
-        }
-        if let Solution::Radiosity(solved) = &solution
-            && !solved.is_split
-        {
-            let memory = budget::readable(budget::memory(world, &run.options));
-            viewing
-                .audience
-                .warned(&run.sources.map, &coarser(solved.patches, &memory));
-        }
         if self.keep == Keep::All {
             self.solution = key.map(|key| (key, solution.clone()));
         }
         Ok((solution, SolutionOrigin::Made))
+    }
+}
+
+/// What light that was just solved lacks.
+fn lacks(solution: &Solution, viewing: &Viewing<'_>) -> Vec<Diagnostics> {
+    match solution {
+        Solution::Nothing => Vec::new(),
+        Solution::Photons(solved) => too_few(solved, viewing.options),
+        Solution::Radiosity(solved) => {
+            let memory = || budget::readable(budget::memory(viewing.world, viewing.options));
+            let unfinished = (!solved.is_converged).then(|| unfinished(solved.residual));
+            let coarser = (!solved.is_split).then(|| coarser(solved.patches, &memory()));
+            unfinished.into_iter().chain(coarser).collect()
+        }
     }
 }
 
@@ -173,12 +193,7 @@ fn unfinished(residual: f64) -> Diagnostics {
         100.0 * residual
     );
     let hint = "surfaces that lose no light (white on all sides of a closed room) have no solution: make them darker";
-    let mut found = Diagnostics::default();
-    found.push(Diagnostic {
-        primary: None,
-        ..Diagnostic::warning("not-converged", Span::default(), text).hint(hint)
-    });
-    found
+    warned("not-converged", text, hint)
 }
 
 /// Tells that patches could not be split as far as was wanted.
@@ -187,10 +202,49 @@ fn coarser(patches: u64, memory: &str) -> Diagnostics {
         "radiosity is coarser than was wanted: there is no memory for more elements of its {patches} patches than {memory} hold"
     );
     let hint = "use more `--max-memory`, a larger `--subdivision-threshold` or a smaller `--subdivision-depth`";
+    warned("coarser", text, hint)
+}
+
+/// Tells which sources, and which mirrors and glass, so few photons stand for that their light may be missing.
+fn too_few(solved: &PhotonSolution, options: &Options) -> Vec<Diagnostics> {
+    let caustic = options
+        .caustic_photons
+        .value
+        .map_or(CAUSTIC_PHOTONS, |n| n.0);
+    let kinds = [
+        (
+            solved.sources,
+            ("light sources that sent", "their light"),
+            ("global-photons", options.global_photons.value.0),
+        ),
+        (
+            solved.specular,
+            ("mirrors and glass that were met by", "their caustics"),
+            ("caustic-photons", caustic),
+        ),
+    ];
+    let warning = |(coverage, (which, what), (key, n)): (Option<Coverage>, _, (_, u64))| {
+        let Coverage { all, few, fewest } = coverage.filter(|found| found.few > 0)?;
+        let text = format!(
+            "{which} fewer than {ENOUGH} photons: {few} of {all} (the least: {fewest}); {what} may be missing or in spots, \
+             and no estimate of the error sees that"
+        );
+        // As many as give the last one enough, if that can be told from what it has.
+        let hint = match ENOUGH.checked_div(fewest) {
+            Some(times) => format!("use `--{key} {}`", n.saturating_mul(times + 1)),
+            None => format!("use many more `--{key}`"),
+        };
+        Some(warned("few-photons", text, hint))
+    };
+    kinds.into_iter().filter_map(warning).collect()
+}
+
+/// A single warning.
+fn warned(code: &'static str, text: String, hint: impl Into<String>) -> Diagnostics {
     let mut found = Diagnostics::default();
     found.push(Diagnostic {
         primary: None,
-        ..Diagnostic::warning("coarser", Span::default(), text).hint(hint)
+        ..Diagnostic::warning(code, Span::default(), text).hint(hint)
     });
     found
 }

@@ -146,6 +146,7 @@ pub(super) mod tests {
             knob,
             settings: vec![("samples".into(), knob.to_string())],
             solve,
+            first: 0.0,
             view,
             error,
             error_deviation: 0.01 * error,

@@ -263,7 +263,7 @@ fn objects(findings: &Findings, out: &mut String) {
 fn everything(findings: &Findings, out: &mut String) {
     out.push_str(
         "<details><summary>All settings that were measured</summary><div class=\"wide\"><table><tr><th>method</th><th>solve, s</th>\
-         <th>view, s</th><th>error</th><th>all pixels</th><th>variance</th><th>bias²</th><th>all light</th><th>ꟻLIP</th>\
+         <th>first view besides, s</th><th>view, s</th><th>error</th><th>all pixels</th><th>variance</th><th>bias²</th><th>all light</th><th>ꟻLIP</th>\
          <th>95 %</th><th>flicker</th><th>rays</th><th class=\"left\">settings</th></tr>\n",
     );
     for ladder in &findings.families {
@@ -273,10 +273,11 @@ fn everything(findings: &Findings, out: &mut String) {
                 .map_or("–".to_owned(), |f| format!("{:.2}", f.flicker));
             let _ = writeln!(
                 out,
-                "<tr><td>{}</td><td>{:.3}</td><td>{:.3}</td><td>{}</td><td>{:.2} %</td><td>{:.1e}</td><td>{:.1e}</td><td>{}</td>\
+                "<tr><td>{}</td><td>{:.3}</td><td>{:.3}</td><td>{:.3}</td><td>{}</td><td>{:.2} %</td><td>{:.1e}</td><td>{:.1e}</td><td>{}</td>\
                  <td>{:.3}</td><td>{:.3}</td><td>{flicker}</td><td>{:.1} M</td><td class=\"left\"><code>{}</code></td></tr>",
                 escaped(&ladder.name),
                 rung.solve,
+                rung.first,
                 rung.view,
                 error(rung),
                 percent(rung.error_of_all),

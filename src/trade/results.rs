@@ -89,6 +89,9 @@ pub struct Measured {
     pub settings: Vec<(String, String)>,
     /// Seconds for the light that all cameras share.
     pub solve: f64,
+    /// Seconds that the first view takes besides: what is gathered once it is seen, and kept for views of the same place.
+    #[serde(default)]
+    pub first: f64,
     /// Seconds for one view.
     pub view: f64,
     /// Mean over seeds, without the worst thousandth of the pixels.
@@ -145,10 +148,12 @@ impl Ladder {
 }
 
 impl Measured {
-    /// Seconds for so many cameras, each of `scale` times as many pixels as were measured.
+    /// Seconds for so many cameras that see the same place, each of `scale` times as many pixels as were measured.
+    ///
+    /// What is gathered for neighbouring pixels grows with the picture, but more slowly: between not at all and in proportion.
     #[must_use]
     pub fn seconds(&self, cameras: u32, scale: f64) -> f64 {
-        self.solve + f64::from(cameras) * scale * self.view
+        self.solve + scale.sqrt() * self.first + f64::from(cameras) * scale * self.view
     }
 
     /// The error, as far as it can be told from none: never less than its own uncertainty.
@@ -163,7 +168,7 @@ impl Measured {
 pub fn csv(findings: &Findings) -> String {
     let mut out = String::from(FIRST_COLUMNS);
     out.push_str(
-        ",settings,solve_s,view_s,relmse,relmse_se,relmse_all,variance,bias2,energy,energy_se,flip,flip_p95,flicker,rays,patches,photons\n",
+        ",settings,solve_s,first_s,view_s,relmse,relmse_se,relmse_all,variance,bias2,energy,energy_se,flip,flip_p95,flicker,rays,patches,photons\n",
     );
     for ladder in &findings.families {
         for rung in &ladder.rungs {
@@ -178,11 +183,12 @@ pub fn csv(findings: &Findings) -> String {
                 .flicker
                 .map_or(String::new(), |f| format!("{:.4}", f.flicker));
             out.push_str(&format!(
-                "\"{}\",{},{},{:.5},{:.5},{:.4e},{:.2e},{:.4e},{:.4e},{:.4e},{:.4e},{:.2e},{:.4},{:.4},{flicker},{},{},{}\n",
+                "\"{}\",{},{},{:.5},{:.5},{:.5},{:.4e},{:.2e},{:.4e},{:.4e},{:.4e},{:.4e},{:.2e},{:.4},{:.4},{flicker},{},{},{}\n",
                 ladder.name,
                 rung.knob,
                 settings.join(" "),
                 rung.solve,
+                rung.first,
                 rung.view,
                 rung.error,
                 rung.error_deviation,
@@ -204,3 +210,21 @@ pub fn csv(findings: &Findings) -> String {
 
 /// By which an earlier table is known.
 pub const FIRST_COLUMNS: &str = "family,knob";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trade::front::tests::measured;
+
+    /// Light that is solved or gathered once is paid once; what is gathered grows with the side of the picture, a view with its area.
+    #[test]
+    fn what_is_kept_between_views_is_paid_once() {
+        let rung = Measured {
+            first: 10.0,
+            ..measured(1.0, 100.0, 1.0, 0.1)
+        };
+        assert!((rung.seconds(1, 1.0) - 111.0).abs() < 1e-12);
+        assert!((rung.seconds(1, 4.0) - 124.0).abs() < 1e-12);
+        assert!((rung.seconds(100, 4.0) - 520.0).abs() < 1e-12);
+    }
+}

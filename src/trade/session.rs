@@ -201,7 +201,7 @@ impl Session<'_> {
         let rung = &family.rungs[at];
         let key = self.key(family, rung);
         if let Some(known) = self.known(&key) {
-            climb.cost((known.solve + known.view) * f64::from(self.plan.seeds));
+            climb.cost((known.solve + known.first + known.view) * f64::from(self.plan.seeds));
             // Two families may share a setting, each with a knob of its own.
             let knob = rung.knob;
             self.findings.families[nth]

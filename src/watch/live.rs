@@ -232,6 +232,7 @@ impl<'s> Live<'s> {
         let solved = self
             .studio
             .solve_showing(&run, scene, &viewing, &mut show)?;
+        solved.warn(viewing.audience, &run.sources.map);
         let start = self.world.now();
         let prepared = viewing.prepare(scene, &solved.solution)?;
         let time = self.world.now().saturating_sub(start);

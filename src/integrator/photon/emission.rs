@@ -15,6 +15,7 @@ use crate::material::Material;
 use crate::math::{Bounds3, Ray, rng};
 use crate::sampler::{Sampler, SamplerKind, Use};
 use crate::scene::{EmitterId, Scene};
+use std::collections::BTreeMap;
 
 /// What photons are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -203,6 +204,27 @@ impl<'s> Emission<'s> {
             is_direct: start.is_direct,
             sampler,
         })
+    }
+
+    /// How many of `n` photons each source sends at the least, shining surfaces organ by organ.
+    #[must_use]
+    pub fn sent(&self, n: u64) -> Vec<u64> {
+        let mut shares: BTreeMap<(usize, u32), f64> = BTreeMap::new();
+        for (source, probability) in self.sources.iter().zip(&self.probabilities) {
+            let one = match source {
+                Source::Lamp(index) => *index as u32,
+                Source::Sun | Source::Sky | Source::Land => 0,
+                Source::Emitter(id, _) => self.scene.emitters()[id.0 as usize].organ.0,
+            };
+            // What sends nothing is no source.
+            if *probability > 0.0 {
+                *shares.entry((source.kind(), one)).or_default() += probability;
+            }
+        }
+        shares
+            .into_values()
+            .map(|share| (share * n as f64) as u64)
+            .collect()
     }
 
     fn start(&self, source: Source, sampler: &Sampler) -> Option<Start> {

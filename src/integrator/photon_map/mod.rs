@@ -14,6 +14,7 @@
 //! spots       where irradiance is sampled           estimate    irradiance over the real area
 //! irradiance  the samples, asked by views           pieces      leaves smaller than the kernel
 //! pool        light that needles share              crossings   their area, counted by lines
+//! coverage    what too few photons stand for
 //! progressive passes in the memory of one           view        what views ask of the maps
 //! trials      estimates from photons laid out by hand
 //!                                                   solution    all of it, kept and as bytes
@@ -23,6 +24,7 @@
 //! Its error is blur over the kernel, and noise of the photons in it that is the same in every view. Infinite planes that shine
 //! light other surfaces only as direct light that rays from the camera meet in mirrors.
 
+mod coverage;
 mod crossings;
 mod estimate;
 mod irradiance;
@@ -49,12 +51,15 @@ use super::{
 use crate::material::Material;
 use crate::math::{Bounds3, rng};
 use crate::scene::Scene;
+use crate::scene::description::OrganId;
+pub use coverage::{Coverage, ENOUGH};
 use glam::DVec3;
 use irradiance::IrradianceMap;
 use pieces::PiecePower;
 use progressive::Progressive;
 pub use solution::PhotonSolution;
 use spots::World;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use stored::{Collector, Stored, Wanted};
@@ -70,7 +75,7 @@ const PILOTS: u64 = 1 << 14;
 const LONGEST_PATH: u32 = 1024;
 
 /// Photons for caustics where their number is not given.
-const CAUSTIC_PHOTONS: u64 = 1_000_000;
+pub const CAUSTIC_PHOTONS: u64 = 1_000_000;
 
 /// Settings of photon mapping.
 #[derive(Clone, Debug, PartialEq)]
@@ -221,27 +226,29 @@ impl PhotonMapping {
             Wanted::IndirectWithoutCaustics
         };
         let scene = (scene, &requirements);
-        let (global, n_global_stored) = self.map(scene, wanted, n_global, context)?;
-        let (caustic, n_caustic_stored) = self.map(scene, Wanted::Caustics, n_caustic, context)?;
+        let global = self.map(scene, wanted, n_global, context)?;
+        let caustic = self.map(scene, Wanted::Caustics, n_caustic, context)?;
         Ok(PhotonSolution {
-            global,
-            caustic,
             emitted: (n_global + n_caustic) * u64::from(self.passes),
-            stored: n_global_stored + n_caustic_stored,
+            stored: global.n_stored + caustic.n_stored,
+            global: global.light,
+            caustic: caustic.light,
+            sources: global.coverage,
+            specular: caustic.coverage,
             gather: OnceLock::new(),
         })
     }
 
-    /// Follows the photons of all passes and makes those that are wanted ready; tells how many these are.
+    /// Follows the photons of all passes and makes those that are wanted ready.
     fn map(
         &self,
         (scene, requirements): (&Scene, &Requirements),
         wanted: Wanted,
         n: u64,
         context: &RenderContext<'_>,
-    ) -> Result<(Option<IrradianceMap>, u64), RenderError> {
+    ) -> Result<Map, RenderError> {
         if n == 0 {
-            return Ok((None, 0));
+            return Ok(Map::default());
         }
         let aim = match wanted {
             // Kept where nothing is specular, they would have nothing to be aimed at.
@@ -258,29 +265,53 @@ impl PhotonMapping {
         };
         let world = World { scene, center };
         let seed = rng::hash(&[context.seed, aim as u64]);
-        let pass = Pass {
-            emission: &Emission::required(requirements, scene, aim, Bounds3::EMPTY),
+        let emission = Emission::required(requirements, scene, aim, Bounds3::EMPTY);
+        let mut pass = Pass {
+            emission: &emission,
             world,
             wanted,
             photons: Photons::all(n * u64::from(self.passes), seed, LONGEST_PATH),
             n,
             n_passes: self.passes,
             most: self.most_stored.min(u64::from(u32::MAX - 1)),
+            met: BTreeMap::new(),
         };
         pass.plan(context)?;
         let first = pass.photons(0, context)?;
         let mut n_stored = first.len() as u64;
-        let Some(mut light) = Progressive::begin(world, first, self.photon_area, self.passes)
-        else {
-            return Ok((None, 0));
-        };
-        for index in 1..self.passes {
-            let photons = pass.photons(index, context)?;
-            n_stored += photons.len() as u64;
-            light.add(index + 1, photons);
+        let mut light = Progressive::begin(world, first, self.photon_area, self.passes);
+        if let Some(light) = &mut light {
+            for index in 1..self.passes {
+                let photons = pass.photons(index, context)?;
+                n_stored += photons.len() as u64;
+                light.add(index + 1, photons);
+            }
         }
-        Ok((Some(light.finish()), n_stored))
+        Ok(Map {
+            light: light.map(Progressive::finish),
+            n_stored,
+            coverage: match wanted {
+                // In the dark nothing is missing.
+                _ if emission.is_dark() => None,
+                Wanted::Caustics => {
+                    let areas = scene.areas_of(Material::is_specular);
+                    areas.map(|areas| Coverage::of_specular(&areas, &pass.met))
+                }
+                _ => Some(Coverage::of(emission.sent(pass.photons.n))),
+            },
+        })
     }
+}
+
+/// Light of all photons of a kind.
+#[derive(Default)]
+struct Map {
+    /// `None` if none arrived.
+    light: Option<IrradianceMap>,
+    n_stored: u64,
+    /// Of sources by the photons that look for all light, of mirrors and glass by those that are aimed at them; `None` if there are no such
+    /// photons, or too many surfaces to ask.
+    coverage: Option<Coverage>,
 }
 
 /// How the photons of passes are followed.
@@ -295,11 +326,13 @@ struct Pass<'a, 's> {
     n_passes: u32,
     /// Photons that may be stored at once.
     most: u64,
+    /// Photons for caustics that met each specular organ.
+    met: BTreeMap<OrganId, u64>,
 }
 
 impl Pass<'_, '_> {
     /// Follows a few photons and tells from them whether those of a pass will fit.
-    fn plan(&self, context: &RenderContext<'_>) -> Result<(), RenderError> {
+    fn plan(&mut self, context: &RenderContext<'_>) -> Result<(), RenderError> {
         if self.n <= PLANNED {
             return Ok(());
         }
@@ -308,6 +341,8 @@ impl Pass<'_, '_> {
             ..*context
         };
         let n_stored = self.stored(0..PILOTS, &silent)?.len();
+        // They are followed once more.
+        self.met.clear();
         let expected = self.n / PILOTS * n_stored as u64;
         self.check(expected)
     }
@@ -320,12 +355,17 @@ impl Pass<'_, '_> {
     }
 
     /// The photons of a pass, counted from 0.
-    fn photons(&self, pass: u32, context: &RenderContext<'_>) -> Result<Vec<Stored>, RenderError> {
+    fn photons(
+        &mut self,
+        pass: u32,
+        context: &RenderContext<'_>,
+    ) -> Result<Vec<Stored>, RenderError> {
         let begin = u64::from(pass) * self.n;
+        let total = u64::from(self.n_passes) * self.n;
         let progress = |progress: Progress| {
             (context.progress)(Progress {
                 done: begin + progress.done,
-                total: u64::from(self.n_passes) * self.n,
+                total,
             });
         };
         let context = RenderContext {
@@ -337,16 +377,18 @@ impl Pass<'_, '_> {
 
     /// Those of a range of photons that are wanted, where they arrive.
     fn stored(
-        &self,
+        &mut self,
         range: Range<u64>,
         context: &RenderContext<'_>,
     ) -> Result<Vec<Stored>, RenderError> {
         let World { scene, center } = self.world;
+        let wanted = self.wanted;
         let collector = || Collector {
             scene,
-            wanted: self.wanted,
+            wanted,
             center,
             photons: Vec::new(),
+            met: BTreeMap::new(),
         };
         let photons = Photons {
             range,
@@ -354,10 +396,14 @@ impl Pass<'_, '_> {
         };
         let mut stored: Vec<Stored> = Vec::new();
         let mut n_stored = 0;
+        let (most, met) = (self.most, &mut self.met);
         let join = |block: Collector<'_>| {
             n_stored += block.photons.len() as u64;
-            if n_stored <= self.most {
+            if n_stored <= most {
                 stored.extend(block.photons);
+            }
+            for (organ, n) in block.met {
+                *met.entry(organ).or_default() += n;
             }
         };
         trace(self.emission, &photons, context, collector, join)?;

@@ -4,6 +4,7 @@
 //! of samples, its pieces, what pieces share, and its places. Only what views ask for is kept, not the photons: 35 bytes for a sample (49 where something hides a part of
 //! its surroundings), of which there are fewer than photons. Numbers that no solution has are refused.
 
+use super::coverage::Coverage;
 use super::estimate::Hidden;
 use super::irradiance::{IrradianceMap, Layer, Sample};
 use super::pieces::PieceLight;
@@ -43,6 +44,10 @@ pub struct PhotonSolution {
     pub emitted: u64,
     /// Photons that arrived where they are stored, and were.
     pub stored: u64,
+    /// How many photons stand for each source, and for each mirror and glass body. Not written: who solved was told.
+    pub sources: Option<Coverage>,
+    /// See [`sources`](Self::sources).
+    pub specular: Option<Coverage>,
     /// What views have gathered with the settings of the first of them. Not written: any view finds it again.
     pub(super) gather: OnceLock<Arc<FinalGather>>,
 }
@@ -77,6 +82,8 @@ impl PhotonSolution {
             caustic,
             emitted,
             stored,
+            sources: None,
+            specular: None,
             gather: OnceLock::new(),
         })
     }

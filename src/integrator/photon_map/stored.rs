@@ -7,8 +7,10 @@ use crate::material::Optics;
 use crate::math::PrimitiveId;
 #[cfg(test)]
 use crate::scene::SurfacePoint;
+use crate::scene::description::OrganId;
 use crate::scene::{Piece, Scene};
 use glam::{DVec3, Vec3};
+use std::collections::BTreeMap;
 
 /// A unit normal; 16 bits per coordinate are good to 0.002°.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -177,6 +179,8 @@ pub(super) struct Collector<'s> {
     pub(super) wanted: Wanted,
     pub(super) center: DVec3,
     pub(super) photons: Vec<Stored>,
+    /// Photons for caustics that met each specular organ.
+    pub(super) met: BTreeMap<OrganId, u64>,
 }
 
 impl Visitor for Collector<'_> {
@@ -196,8 +200,12 @@ impl Visitor for Collector<'_> {
             Wanted::Indirect | Wanted::IndirectWithoutCaustics => true,
             Wanted::Caustics => {
                 let mut lobes = hit.optics.scattering.lobes.iter();
-                matches!(hit.history, History::Direct | History::Specular)
-                    && lobes.any(|lobe| lobe.is_delta())
+                let goes_on = matches!(hit.history, History::Direct | History::Specular)
+                    && lobes.any(|lobe| lobe.is_delta());
+                if goes_on {
+                    *self.met.entry(hit.point.owner()).or_default() += 1;
+                }
+                goes_on
             }
         };
         if goes_on { Onward::Go } else { Onward::Stop }

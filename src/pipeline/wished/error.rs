@@ -74,7 +74,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
         let is_open = chooser.is_free() && is_judged;
         let mut notes = Vec::new();
         let mut aim = Aim::new(wanted);
-        let (shot, exposure, facts) = loop {
+        let (shot, exposure, solved) = loop {
             let rest = path_seconds.filter(|_| is_open);
             let settled = self.settle(&chooser.aiming(aim.error), &pilot, offer, rest)?;
             let Some((settled, solved)) = settled else {
@@ -89,7 +89,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
             let instead = match (missed, next) {
                 (Some(_), Some(_)) => "more is taken of it",
                 (Some(_), None) if is_open => "path traced instead",
-                _ => break (shot, exposure, solved.facts),
+                _ => break (shot, exposure, solved),
             };
             let error = missed.map(|error| error.text()).unwrap_or_default();
             let name = &self.run.options.renderer.text;
@@ -101,6 +101,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
                 None => offer = chooser.path_offer(&pilot.path),
             }
         };
+        self.warn(&solved);
         let n = shot.effort.samples_per_pixel;
         self.run.options = chooser.with(offer.family, offer.rung, Some(n))?;
         notes.extend(told(self.run));
@@ -110,7 +111,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
         Ok(Taken {
             shot,
             exposure,
-            facts,
+            facts: solved.facts,
             notes,
         })
     }

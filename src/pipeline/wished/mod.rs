@@ -72,6 +72,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
     /// With the options as they are.
     fn as_told(&mut self) -> Result<Taken, Failure> {
         let solved = self.solve()?;
+        self.warn(&solved);
         let (mut shot, exposure) = self.shoot(&solved, || Until::Samples)?;
         if self.run.options.renderer.value != Renderer::Path && shot.is_whole {
             let n = samples_of_half(shot.effort.n_samples);
@@ -83,6 +84,11 @@ impl<'s> Taking<'_, '_, '_, 's> {
             facts: solved.facts,
             notes: Vec::new(),
         })
+    }
+
+    /// Tells people what the light of a picture lacks.
+    fn warn(&self, solved: &Solved) {
+        solved.warn(self.making.audience, &self.run.sources.map);
     }
 
     /// The light that all views share.

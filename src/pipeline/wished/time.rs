@@ -43,6 +43,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
                 Until::Time(Duration::from_secs_f64(left))
             }
         };
+        self.warn(&solved);
         let (mut shot, exposure) = self.shoot(&solved, until)?;
         if is_checked && shot.is_whole {
             let judge = pilot.as_ref().map(|pilot| &*pilot.judge);
