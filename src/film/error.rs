@@ -27,6 +27,7 @@ impl ErrorEstimate {
 
         // Mean squared relative error of each tile. Tiles are the blocks whose spread tells how far to trust the mean.
         let mut blocks = Vec::with_capacity(film.tiles().len());
+        let mut fourth = 0.0;
         for tile in film.tiles() {
             let mut sum = 0.0;
             for pixel in &tile.pixels {
@@ -34,7 +35,9 @@ impl ErrorEstimate {
                 let variance = pixel.variance()?;
                 let scale = luminance * luminance + floor;
                 // A black picture is exactly black: no error, not 0/0.
-                sum += if scale > 0.0 { variance / scale } else { 0.0 };
+                let relative = if scale > 0.0 { variance / scale } else { 0.0 };
+                sum += relative;
+                fourth += relative * relative;
             }
             blocks.push((sum, tile.pixels.len() as f64));
         }
@@ -48,7 +51,11 @@ impl ErrorEstimate {
             .iter()
             .map(|(sum, size)| (sum - squared * size).powi(2))
             .sum::<f64>();
-        let squared_error = (spread / (n * (n - 1.0).max(1.0))).sqrt() / mean_size;
+        let by_blocks = (spread / (n * (n - 1.0).max(1.0))).sqrt() / mean_size;
+        // Each pixel's variance is known from one difference of two halves: a square of a normal number, whose own variance is two thirds of
+        // its second moment. Small pictures have few tiles, the smallest a single one, whose spread tells nothing.
+        let by_pixels = (2.0 / 3.0 * fourth).sqrt() / n_pixels as f64;
+        let squared_error = by_blocks.max(by_pixels);
         let uncertainty = if relative > 0.0 {
             0.5 * squared_error / relative
         } else {
@@ -69,11 +76,15 @@ mod tests {
 
     /// A film of uniform noise 0..2 (mean 1, standard deviation 1/√3) with `n` samples per pixel.
     fn noise(n: u32) -> Film {
-        let mut film = Film::new(100, 60);
+        noise_of((100, 60), n, 0)
+    }
+
+    fn noise_of((width, height): (u32, u32), n: u32, seed: u64) -> Film {
+        let mut film = Film::new(width, height);
         for (t, tile) in (0..).zip(film.tiles_mut()) {
             for (p, pixel) in (0..).zip(&mut tile.pixels) {
                 for i in 0..n {
-                    let u = rng::unit_f64(rng::hash(&[t, p, u64::from(i)]));
+                    let u = rng::unit_f64(rng::hash(&[seed, t, p, u64::from(i)]));
                     pixel.add(i, Rgb::splat(2.0 * u));
                 }
             }
@@ -92,6 +103,26 @@ mod tests {
                 "{n}: {estimate:?} {truth}"
             );
             assert!(estimate.uncertainty < 0.05 * truth);
+        }
+    }
+
+    /// A picture within one tile, and one of a single pixel, say how far their error is known: by how much it scatters from seed to seed. 400
+    /// seeds know that to 4 %; a single pixel is known from one number, whose square root is no normal one. An uncertainty by tiles alone is 0.
+    #[test]
+    fn small_films_know_how_little_they_know() {
+        for (size, range) in [((12, 10), 0.85..1.15), ((1, 1), 0.5..1.5)] {
+            let seeds = 0..400;
+            let found = seeds.map(|seed| noise_of(size, 64, seed).error_estimate().unwrap());
+            let found: Vec<ErrorEstimate> = found.collect();
+            let n = found.len() as f64;
+            let mean = found.iter().map(|e| e.relative).sum::<f64>() / n;
+            let spread = found.iter().map(|e| (e.relative - mean).powi(2));
+            let scatter = (spread.sum::<f64>() / (n - 1.0)).sqrt();
+            let told = found.iter().map(|e| e.uncertainty).sum::<f64>() / n;
+            assert!(
+                range.contains(&(told / scatter)),
+                "{size:?}: {told} {scatter}"
+            );
         }
     }
 
