@@ -134,7 +134,7 @@ pub(super) fn weights(
         let power = match *source {
             Source::Lamp(index) => scene.lights()[index].power(radius),
             Source::Sun => sun.map_or(Rgb::BLACK, |sun| sun.irradiance * disk),
-            Source::Sky => dome.horizontal_irradiance() * disk,
+            Source::Sky => dome.typical_irradiance() * disk,
             Source::Emitter(id) => {
                 let emitter = &scene.emitters()[id.0 as usize];
                 let material = scene.material(emitter.material);

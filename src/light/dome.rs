@@ -67,6 +67,8 @@ struct Panorama {
     strength: f64,
     /// ∫ L cos θ dω over the upper half.
     irradiance: Rgb,
+    /// ¼ ∫ L dω over all directions.
+    mean_irradiance: Rgb,
     /// In the picture's own directions.
     table: SkyTable,
 }
@@ -122,6 +124,7 @@ impl Panorama {
         let columns = 2 * rows;
         let mut cells = vec![0.0; rows * columns];
         let mut irradiance = [Sum::ZERO; 3];
+        let mut flux = [Sum::ZERO; 3];
         for y in 0..height {
             // The band of directions that a row of pixels covers.
             let (upper, lower) = (edge_height(y, height), edge_height(y + 1, height));
@@ -129,8 +132,9 @@ impl Panorama {
             let facing = (upper.max(0.0).powi(2) - lower.max(0.0).powi(2)) * PI / width as f64;
             for x in 0..width {
                 let value = image.pixel(x as isize, y as isize) * strength;
-                for (sum, channel) in irradiance.iter_mut().zip(value.to_array()) {
-                    sum.add(channel * facing);
+                for (at, channel) in value.to_array().into_iter().enumerate() {
+                    irradiance[at].add(channel * facing);
+                    flux[at].add(channel * solid_angle);
                 }
                 // Linear interpolation spreads a pixel over the halves of pixels round its middle.
                 for (dy, share_y) in SPREAD {
@@ -159,6 +163,7 @@ impl Panorama {
             turn,
             strength,
             irradiance: Rgb::from_array(irradiance.map(|sum| sum.value())),
+            mean_irradiance: Rgb::from_array(flux.map(|sum| sum.value() * 0.25)),
             table: SkyTable::new(edges, cells),
         }
     }
@@ -264,6 +269,18 @@ impl Dome {
             Content::Uniform(radiance) => *radiance * PI,
             Content::Landscape(land) => land.irradiance,
             Content::Image(panorama) => panorama.irradiance,
+        }
+    }
+
+    /// Irradiance by what [`sample`](Self::sample) can choose, as far as it matters for choosing the sky among sources: that of a
+    /// horizontal surface; by a picture, which may be bright below the horizon only, the mean over surfaces of all directions.
+    #[must_use]
+    pub fn typical_irradiance(&self) -> Rgb {
+        match &self.content {
+            Content::Image(panorama) => panorama.mean_irradiance,
+            Content::Dark | Content::Uniform(_) | Content::Landscape(_) => {
+                self.horizontal_irradiance()
+            }
         }
     }
 

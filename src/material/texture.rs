@@ -95,7 +95,7 @@ impl Texture {
         }
     }
 
-    /// Linear colour and coverage (0..=1) at texture coordinates of the surface.
+    /// Linear colour and coverage (0..=1) at texture coordinates of the surface; black where it does not cover at all.
     #[must_use]
     pub fn at(&self, uv: DVec2) -> (Rgb, f64) {
         let at = self.map.transform_point2(uv);
@@ -108,7 +108,12 @@ impl Texture {
         match self.filter {
             Filter::Nearest => {
                 let [x, y] = inside.floor().to_array().map(|x| x as i64);
-                self.texel(x, y)
+                let (color, coverage) = self.texel(x, y);
+                if coverage > 0.0 {
+                    (color, coverage)
+                } else {
+                    (Rgb::BLACK, 0.0)
+                }
             }
             Filter::Bilinear => self.between(inside - 0.5),
         }
@@ -381,6 +386,10 @@ mod tests {
         let mut edge = Texture::new(Arc::new(Image::linear(2, 1, texels).unwrap()));
         let (color, coverage) = edge.at(DVec2::new(0.5, 0.5));
         assert_eq!((color, coverage), (Rgb::splat(0.5), 0.5));
+        edge.filter = Filter::Nearest;
+        assert_eq!(edge.at(DVec2::new(0.75, 0.5)), (Rgb::BLACK, 0.0));
+        assert_eq!(edge.at(DVec2::new(0.25, 0.5)).1, 1.0);
+        edge.filter = Filter::Bilinear;
         edge.cutoff = Some(0.6);
         assert_eq!(edge.coverage(DVec2::new(0.5, 0.5)), 0.0);
         assert_eq!(edge.coverage(DVec2::new(0.3, 0.5)), 1.0);

@@ -10,6 +10,7 @@ use understory::light::Light;
 use understory::material::Material;
 use understory::math::angle::Angle;
 use understory::scene::Scene;
+use understory::scene::description::Extras;
 use understory::validation::room;
 pub(crate) use understory::validation::room::{at, even_sky, gray, square};
 
@@ -28,6 +29,10 @@ impl Room {
 
     pub(crate) fn under(self, environment: Environment) -> Self {
         Self(self.0.under(environment))
+    }
+
+    pub(crate) fn with_extras(self, extras: Extras) -> Self {
+        Self(self.0.with_extras(extras))
     }
 
     pub(crate) fn build(self) -> Scene {

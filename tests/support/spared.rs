@@ -10,13 +10,13 @@ use understory::material::Material;
 use understory::math::angle::Angle;
 use understory::scene::Scene;
 
-fn matt(reflectance: f64) -> Material {
+pub(crate) fn matt(reflectance: f64) -> Material {
     Material::lambert(gray(reflectance))
 }
 
 /// A box without its front wall, of walls of this material, with a ball on its floor; and something far below, so that patches, whose size
 /// goes by that of the scene, are few.
-fn open_box(wall: &Material, on_floor: Material) -> Room {
+pub(crate) fn open_box(wall: &Material, on_floor: Material) -> Room {
     let turn_x = DAffine3::from_rotation_x(PI / 2.0);
     let turn_y = DAffine3::from_rotation_y(PI / 2.0);
     Room::default()
@@ -34,17 +34,27 @@ fn leafy(room: Room) -> Room {
     room.with(square(0.3), at(-0.4, 0.0, 0.8), leaf)
 }
 
-fn lamp() -> Light {
+pub(crate) fn lamp() -> Light {
     Light::point(DVec3::new(0.1, -0.2, 1.7), Rgb::new(20.0, 16.0, 12.0))
 }
 
-fn panel(room: Room) -> Room {
+pub(crate) fn panel(room: Room) -> Room {
     let shine = matt(0.0).emitting(gray(9.0), gray(9.0));
     room.with(square(0.3), at(0.0, 0.0, 1.9), shine)
 }
 
 fn day() -> Environment {
     Environment::daylight(Angle::deg(-70.0), Angle::deg(35.0), 3.0, gray(0.2))
+}
+
+/// Many round shapes under an even sky.
+pub(crate) fn balls() -> Room {
+    let gray_box = leafy(open_box(&matt(0.6), matt(0.4)));
+    let balls = (0..25).fold(gray_box, |room, k| {
+        let (x, y) = (f64::from(k % 5) * 0.35 - 0.7, f64::from(k / 5) * 0.35 - 0.7);
+        room.with(Shape::Sphere { radius: 0.15 }, at(x, y, 1.3), matt(0.5))
+    });
+    balls.under(even_sky(1.0))
 }
 
 /// Scenes with what they are called.
@@ -55,12 +65,8 @@ pub(crate) fn scenes() -> Vec<(&'static str, Scene)> {
     let mirror = Material::mirror(gray(0.9));
     let cut = matt(0.6).with_alpha(0.5);
     let pane = Material::pane(1.5, Rgb::new(0.9, 0.8, 0.7));
-    let balls = (0..25).fold(gray_box(), |room, k| {
-        let (x, y) = (f64::from(k % 5) * 0.35 - 0.7, f64::from(k / 5) * 0.35 - 0.7);
-        room.with(Shape::Sphere { radius: 0.15 }, at(x, y, 1.3), matt(0.5))
-    });
     vec![
-        ("balls", balls.under(even_sky(1.0)).build()),
+        ("balls", balls().build()),
         ("lamp", gray_box().lit_by(lamp()).build()),
         (
             "two lamps",
