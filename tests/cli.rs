@@ -419,6 +419,29 @@ fn what_a_scene_requires_is_told_kept_and_reported() {
     assert!(told("--seed 1").contains("left out  no material is a mirror or glass"));
     assert!(told("--require caustics,guide").contains("kept  "));
     bench.fail("render m.rgg --explain-scene --require shadows", 2);
+    let of = |command: &str| bench.succeed(&format!("{command} m.rgg --explain-scene"));
+    let (all, trade, light) = (of("render"), of("trade"), of("light"));
+    assert_eq!(of("export"), all);
+    assert_eq!(trade.lines().count(), all.lines().count());
+    assert!(
+        all.contains("light)") && !trade.contains("light)"),
+        "{trade}"
+    );
+    let names = light.lines().map(|line| line.split(' ').next().unwrap());
+    let names: Vec<&str> = names.collect();
+    assert_eq!(
+        names,
+        ["unaimed-photons", "bodies", "coordinates", "groups"]
+    );
+    assert!(
+        light.lines().all(|line| line.ends_with("(light)")),
+        "{light}"
+    );
+    let kept = bench.succeed("light m.rgg --explain-scene --require bodies -o none.csv");
+    assert!(kept.contains("bodies           kept  "), "{kept}");
+    assert!(!bench.path("none.csv").exists());
+    bench.succeed("trade m.rgg --explain-scene -o none");
+    assert!(!bench.path("none").exists());
     let quick = "render m.rgg --size 16x12 --samples 1 --renderer photon --global-photons 500 --caustic-photons 500";
     bench.succeed(&format!("{quick} -o a.png --report a.json"));
     bench.succeed(&format!(

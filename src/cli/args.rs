@@ -314,7 +314,7 @@ pub struct TradeArgs {
         short,
         long,
         value_name = "FOLDER",
-        required_unless_present = "explain_options"
+        required_unless_present_any = ["explain_options", "explain_scene"]
     )]
     pub output: Option<PathBuf>,
     /// Seconds for the whole measurement, growth left out
@@ -323,6 +323,9 @@ pub struct TradeArgs {
     /// Other random numbers are tried so many times for each setting
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(2..=64))]
     pub seeds: u32,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub scene: SceneArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,
@@ -375,12 +378,15 @@ pub struct LightArgs {
         short,
         long,
         value_name = "FILE.csv",
-        required_unless_present = "explain_options"
+        required_unless_present_any = ["explain_options", "explain_scene"]
     )]
     pub output: Option<PathBuf>,
     /// Write what was done, and how long it took, to this file
     #[arg(long, value_name = "FILE.json")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "see its type")]
+    pub scene: SceneArgs,
     #[command(flatten)]
     #[allow(missing_docs, reason = "see its type")]
     pub manners: Manners,

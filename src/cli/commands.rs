@@ -98,7 +98,7 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     let output = match &args.output {
         _ if args.manners.explain_options => return shell.explain(path, Command::Render),
         Some(output) if !args.scene.explain_scene => output,
-        _ => return explain_scene(shell, &args.model),
+        _ => return explain_scene(shell, &args.model, |_| true),
     };
     let target = PictureTarget::new(&shell.world, output)?;
     let report = shell.report_target(args.report.as_deref())?;
@@ -120,13 +120,17 @@ pub(super) fn render(shell: &Shell, args: &RenderArgs) -> Result<(), Failure> {
     })
 }
 
-/// `--explain-scene`: what the scene requires, and nothing else.
-pub(super) fn explain_scene(shell: &Shell, model: &ModelArg) -> Result<(), Failure> {
+/// `--explain-scene`: what the scene requires of some users, and nothing else.
+pub(super) fn explain_scene(
+    shell: &Shell,
+    model: &ModelArg,
+    is_asked: impl Fn(&str) -> bool + Send,
+) -> Result<(), Failure> {
     let mut studio = studio(shell, model)?;
     run(shell, &mut studio, |studio, run| {
         studio.build(run, &shell.cancel)?;
         if let Some(requirements) = studio.requirements(run) {
-            shell.terminal.print(&requirements.table());
+            shell.terminal.print(&requirements.table_for(is_asked));
         }
         Ok(())
     })
@@ -138,7 +142,7 @@ pub(super) fn export(shell: &Shell, args: &ExportArgs) -> Result<(), Failure> {
     let output = match &args.output {
         _ if args.manners.explain_options => return shell.explain(path, Command::Export),
         Some(output) if !args.scene.explain_scene => output,
-        _ => return explain_scene(shell, &args.model),
+        _ => return explain_scene(shell, &args.model, |_| true),
     };
     let target = GlbTarget::new(&shell.world, output)?;
     let mut studio = studio(shell, &args.model)?;
@@ -163,8 +167,9 @@ pub(super) fn export(shell: &Shell, args: &ExportArgs) -> Result<(), Failure> {
 pub(super) fn light(shell: &Shell, args: &LightArgs) -> Result<(), Failure> {
     let path = &args.model.model;
     let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(path, Command::Light),
+        _ if args.manners.explain_options => return shell.explain(path, Command::Light),
+        Some(output) if !args.scene.explain_scene => output,
+        _ => return explain_light(shell, &args.model),
     };
     let target = CsvTarget::new(&shell.world, output, lighting::FIRST_COLUMNS)?;
     let report = args.report.as_deref();
@@ -185,6 +190,17 @@ pub(super) fn light(shell: &Shell, args: &LightArgs) -> Result<(), Failure> {
         shell
             .terminal
             .note(&format!("{file}: {} ({seconds})", found.summary()));
+        Ok(())
+    })
+}
+
+/// `light --explain-scene`: what the scene that light is counted in requires, and nothing else.
+fn explain_light(shell: &Shell, model: &ModelArg) -> Result<(), Failure> {
+    let mut studio = studio(shell, model)?;
+    run(shell, &mut studio, |studio, run| {
+        let requirements = lighting::requirements(studio, run, &shell.cancel)?;
+        let table = requirements.table_for(|user| user == "light");
+        shell.terminal.print(&table);
         Ok(())
     })
 }

@@ -23,7 +23,7 @@ pub(super) fn fly(shell: &Shell, args: &FlyArgs) -> Result<(), Failure> {
         return shell.explain(path, Command::Fly);
     }
     if args.scene.explain_scene {
-        return explain_scene(shell, &args.model);
+        return explain_scene(shell, &args.model, |_| true);
     }
     let plan = picture_target(shell, args.plan.as_deref())?;
     let Some(output) = &args.output else {

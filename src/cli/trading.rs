@@ -1,7 +1,7 @@
 //! `trade`: what accuracy costs.
 
 use super::args::TradeArgs;
-use super::commands::{check_wishes, run, studio};
+use super::commands::{check_wishes, explain_scene, run, studio};
 use super::shell::Shell;
 use crate::options::Command;
 use crate::pipeline::failure::Failure;
@@ -12,8 +12,11 @@ use crate::trade::{self, Folder, Means, Plan, front};
 /// `trade`: measures, and writes table, plots, page and presets.
 pub(super) fn trade(shell: &Shell, args: &TradeArgs) -> Result<(), Failure> {
     let output = match &args.output {
-        Some(output) if !args.manners.explain_options => output,
-        _ => return shell.explain(&args.model.model, Command::Trade),
+        _ if args.manners.explain_options => {
+            return shell.explain(&args.model.model, Command::Trade);
+        }
+        Some(output) if !args.scene.explain_scene => output,
+        _ => return explain_scene(shell, &args.model, |user| user != "light"),
     };
     let plan = Plan {
         budget: f64::from(args.budget),

@@ -10,6 +10,7 @@ use crate::integrator::interception::{
     Interception, InterceptionError, Lighting, OrganLight, SensorField, Wanted,
 };
 use crate::integrator::photon::Plot;
+use crate::integrator::requirements::Requirements;
 use crate::integrator::{CancelToken, RenderContext};
 use crate::interpret::Organs;
 use crate::options::Options;
@@ -65,12 +66,7 @@ pub fn light(
     let mut plants: Vec<Option<u32>> = drawn.plants.iter().copied().map(Some).collect();
     let sensors = SensorField::new(drawn.sensors.clone())
         .map_err(|error| growing::blame(run, &organs, &error))?;
-    studio.audience.begins("building the scene");
-    let built = studio
-        .seconds
-        .time(world, Phase::Accel, || build(run, drawn));
-    studio.audience.ends();
-    let (scene, plot, areas) = built?;
+    let (scene, plot, areas) = build_telling(studio, run, drawn)?;
 
     for plane in scene.planes() {
         // The ground is no plant: how much light falls on it has no end.
@@ -108,6 +104,20 @@ pub fn light(
     })
 }
 
+/// Grows the model of a run and looks at what counting the light on its organs requires.
+///
+/// # Errors
+/// If the model cannot be grown, the plot is impossible, or it was stopped.
+pub fn requirements(
+    studio: &mut Studio<'_>,
+    run: &Run,
+    cancel: &CancelToken,
+) -> Result<Requirements, Failure> {
+    let drawn = studio.draw_for_light(run, cancel)?;
+    let (scene, ..) = build_telling(studio, run, drawn)?;
+    Ok(Requirements::of(&scene, run.options.require.value))
+}
+
 fn settings(options: &Options, memory: u64, plants: Vec<Option<u32>>) -> Interception {
     Interception {
         photons: options.photons.value.get(),
@@ -127,6 +137,16 @@ fn settings(options: &Options, memory: u64, plants: Vec<Option<u32>>) -> Interce
 
 /// The scene that light is traced in, the plot it stands in, and the areas of its organs.
 type Built = (Scene, Option<Plot>, Option<Vec<f64>>);
+
+/// Builds the scene, and says so.
+fn build_telling(studio: &mut Studio<'_>, run: &Run, drawn: Drawn) -> Result<Built, Failure> {
+    studio.audience.begins("building the scene");
+    let built = studio
+        .seconds
+        .time(studio.world, Phase::Accel, || build(run, drawn));
+    studio.audience.ends();
+    built
+}
 
 fn build(run: &Run, drawn: Drawn) -> Result<Built, Failure> {
     let blame = |error| growing::blame(run, &drawn.organs, &error);

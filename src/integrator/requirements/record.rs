@@ -93,22 +93,36 @@ impl Requirements {
         &self.findings
     }
 
-    /// A table for people, a line for each feature: its name, what becomes of it, why, and the work that it is.
+    /// A table for people, a line for each feature: its name, what becomes of it, why, the work that it is, and who uses it.
     #[must_use]
     pub fn table(&self) -> String {
-        let names = self.findings.iter().map(|found| found.feature.name().len());
+        self.table_for(|_| true)
+    }
+
+    /// The same of what some [users](Feature::users) use, without the others.
+    #[must_use]
+    pub fn table_for(&self, is_asked: impl Fn(&str) -> bool) -> String {
+        let users = |feature: Feature| -> Vec<&str> {
+            let users = feature.users().iter().copied();
+            users.filter(|user| is_asked(user)).collect()
+        };
+        let findings = self.findings.iter();
+        let findings: Vec<&Finding> = findings
+            .filter(|found| !users(found.feature).is_empty())
+            .collect();
+        let names = findings.iter().map(|found| found.feature.name().len());
         let names = names.max().unwrap_or(0);
-        let reasons = self.findings.iter().map(|found| found.why.chars().count());
+        let reasons = findings.iter().map(|found| found.why.chars().count());
         let reasons = reasons.max().unwrap_or(0);
         let mut out = String::new();
         for Finding {
             feature,
             state,
             why,
-        } in &self.findings
+        } in findings
         {
             let (name, state, work) = (feature.name(), state.words(), feature.work());
-            let users = feature.users().join(", ");
+            let users = users(*feature).join(", ");
             let _ = writeln!(
                 out,
                 "{name:names$}  {state:8}  {why:reasons$}  {work} ({users})"
