@@ -1,10 +1,13 @@
 //! What is saved by leaving out what a scene does not require: each feature left out and kept, in turns, in one run.
 //!
-//! `cargo bench --bench requirements`. Times are of processor time of all threads, the best of several turns; the ratio is what counts.
-//! Pictures of both are the same (`tests/requirements.rs`).
+//! `cargo bench --bench requirements`, or with `-- only=groups,coordinates` some of them. Times are of processor time of all threads, the
+//! best of several turns; the ratio is what counts. Pictures of both are the same (`tests/requirements.rs`).
 #![allow(clippy::print_stdout, reason = "a benchmark prints its result")]
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
+#[path = "../tests/support/grouped.rs"]
+#[allow(dead_code, reason = "tests use the rest")]
+mod grouped;
 #[path = "../tests/support/room.rs"]
 #[allow(dead_code, reason = "tests use the rest")]
 mod room;
@@ -22,6 +25,7 @@ use understory::integrator::{
 use understory::math::{Ray, rng};
 use understory::sampler::{Sampler, SamplerKind};
 use understory::scene::Scene;
+use understory::scene::description::Extras;
 
 /// Turns of each.
 const TURNS: usize = 5;
@@ -29,7 +33,7 @@ const TURNS: usize = 5;
 const SIDE: u32 = 96;
 
 /// A feature, the scene that spares it, the renderer, and samples of each ray.
-const CASES: [(Feature, &str, &str, u32); 15] = [
+const CASES: [(Feature, &str, &str, u32); 19] = [
     (Feature::Bounces, "black", "path", 32),
     (Feature::Bounces, "black", "photon", 1),
     (Feature::Bounces, "night", "radiosity", 1),
@@ -45,6 +49,10 @@ const CASES: [(Feature, &str, &str, u32); 15] = [
     (Feature::ClearShadows, "day", "raytracer", 16),
     (Feature::UnaskedLight, "panel", "radiosity", 1),
     (Feature::Insides, "balls", "radiosity", 1),
+    (Feature::Coordinates, "balls", "path", 16),
+    (Feature::Coordinates, "balls", "raytracer", 16),
+    (Feature::Groups, "twigs", "path", 16),
+    (Feature::Groups, "twigs", "raytracer", 16),
 ];
 
 fn renderer(name: &str, kept: Features) -> Method {
@@ -111,13 +119,37 @@ fn work(scene: &Scene, method: &Method, samples: u32) -> f64 {
     1.0
 }
 
+/// A scene by its name, with a feature that scenes are built with kept, if it is one.
+fn scene(what: &str, kept: Features) -> Scene {
+    match what {
+        "twigs" => grouped::twigs(kept.contains(Feature::Groups)),
+        "balls" => {
+            let extras = Extras {
+                coordinates: kept.contains(Feature::Coordinates),
+                ..Extras::default()
+            };
+            spared::balls().with_extras(extras).build()
+        }
+        _ => {
+            let mut scenes = spared::scenes().into_iter();
+            scenes.find(|(known, _)| *known == what).unwrap().1
+        }
+    }
+}
+
+/// Whether a case is among those asked for, or none is.
+fn is_wanted(feature: Feature) -> bool {
+    let only = std::env::args().find_map(|arg| Some(arg.strip_prefix("only=")?.to_owned()));
+    only.is_none_or(|only| only.split(',').any(|name| name == feature.name()))
+}
+
 fn main() {
-    let scenes = spared::scenes();
     println!("| left out | scene | renderer | why | without, s | with, s | saves |");
     println!("|---|---|---|---|---|---|---|");
-    for (feature, what, name, samples) in CASES {
-        let (_, scene) = scenes.iter().find(|(known, _)| *known == what).unwrap();
-        let found = Requirements::of(scene, Features::NONE);
+    for (feature, what, name, samples) in CASES.into_iter().filter(|case| is_wanted(case.0)) {
+        let kept = [Features::NONE, Features::NONE.with(feature)];
+        let scenes = kept.map(|kept| scene(what, kept));
+        let found = Requirements::of(&scenes[0], Features::NONE);
         let found = found
             .findings()
             .iter()
@@ -132,12 +164,12 @@ fn main() {
             }),
             method => method,
         };
-        let methods = [own(Features::NONE), own(Features::NONE.with(feature))];
+        let methods = kept.map(own);
         let mut best = [f64::INFINITY; 2];
         for _ in 0..TURNS {
-            for (best, method) in best.iter_mut().zip(&methods) {
+            for (at, best) in best.iter_mut().enumerate() {
                 let start = cpu();
-                let n = work(scene, method, samples);
+                let n = work(&scenes[at], &methods[at], samples);
                 let scale = if samples == 0 { 100_000.0 } else { 1.0 };
                 *best = best.min((cpu() - start) * scale / n);
             }

@@ -31,6 +31,7 @@ impl Room {
         Self(self.0.under(environment))
     }
 
+    #[allow(dead_code, reason = "one benchmark uses it")]
     pub(crate) fn with_extras(self, extras: Extras) -> Self {
         Self(self.0.with_extras(extras))
     }
