@@ -308,3 +308,31 @@ fn a_film_chooses_once_and_its_frames_depend_on_nothing_else() {
     assert_eq!((again.n_made, again.n_kept), (0, 4));
     assert_eq!(fs::read_to_string(&chosen).unwrap(), text);
 }
+
+/// Seen from behind the room is black: nothing could be chosen by that frame, which is the one in the middle. Chosen by the noisiest frame,
+/// photon mapping keeps the error in all of them. Were the middle frame asked, few samples would seem to do: 18 %.
+#[test]
+fn a_film_is_chosen_by_its_noisiest_frame() {
+    let bench = Bench::new(ROOM);
+    let flags = [
+        ("error", "0.06"),
+        ("renderer", "photon"),
+        ("orbit", "true"),
+        ("flight-frames", "4"),
+        ("flicker", "0"),
+        ("sun", "none"),
+    ];
+    let output = bench.path("f");
+    let film = |making: &Making<'_>, studio: &mut Studio<'_>, run: &mut _| {
+        let reel = Reel::new(&bench.world, &output)?;
+        reel.open(&bench.world)?;
+        making.film(studio, run, &reel)
+    };
+    let made = bench.with(&flags, film).unwrap();
+    let chosen = fs::read_to_string(output.join("chosen.toml")).unwrap();
+    let error = made.effort.error.unwrap();
+    assert!(error.relative <= 0.06, "{} {chosen}", error.text());
+    let notes = made.notes.join("\n");
+    assert!(notes.contains("error of the worst frame: "), "{notes}");
+    assert!(notes.contains("1 of 4 frames are black"), "{notes}");
+}

@@ -1,20 +1,24 @@
 //! `--quality draft`, `preview` and `final` are points of measured fronts: over the scenes of `corpus.csv`, no other setting of the same
-//! method is both faster and more exact.
+//! method is faster, more exact on average, and nowhere heavily wrong.
 //!
-//! The table is what `cargo bench --bench corpus` measured in four minutes a scene on one thread. `draft` and `preview` were measured in at
-//! least six scenes. Settings that were too dear for so short a time in most of them, those of `final`, are held to something weaker: they
-//! are further rungs of the ladders whose first ones the table has.
+//! The table is what `cargo bench --bench corpus` measured on one thread in four minutes a scene, and eight to ten more where presets had not
+//! been reached by then. Each was measured in at least six scenes.
+//!
+//! What is heavily wrong in one scene does not beat a preset, however well it does in others: nobody who has chosen nothing may get a picture
+//! that shows something else. This decides one case: photons looked at directly take half of the time of gathered ones and are a little more
+//! exact in nine scenes of ten, but where light comes through a gap they are five times as wrong.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use understory::options::preset::QUALITIES;
-use understory::options::value::{Quality, Renderer};
+use understory::options::value::Renderer;
 use understory::options::{Options, Origin, Presets};
-use understory::trade::ladder::{Needs, families};
 
 /// Measured on a noisy machine: what is less than this much faster and more exact is not better.
 const GAIN: f64 = 0.95;
+/// What is so many times as wrong in some scene is not better.
+const HEAVILY: f64 = 2.0;
 /// Scenes in which two settings must both have been measured to be compared.
 const FEWEST: usize = 6;
 
@@ -69,17 +73,20 @@ fn default(key: &str) -> String {
     Options::default().entry_of(key).unwrap().canonical()
 }
 
-/// Geometric means of how much slower and how much less exact the other one is, over the scenes of both.
-fn ratios(one: &Curve, other: &Curve) -> Option<[f64; 2]> {
+/// Geometric means of how much slower and how much less exact the other one is, over the scenes of both, and how much less exact it is where
+/// that is most.
+fn ratios(one: &Curve, other: &Curve) -> Option<[f64; 3]> {
     let both: Vec<[f64; 2]> = one
         .iter()
         .filter_map(|(scene, (seconds, error))| {
             let (other_seconds, other_error) = other.get(scene)?;
-            Some([(other_seconds / seconds).ln(), (other_error / error).ln()])
+            Some([other_seconds / seconds, other_error / error])
         })
         .collect();
-    let mean = |i: usize| (both.iter().map(|pair| pair[i]).sum::<f64>() / both.len() as f64).exp();
-    (both.len() >= FEWEST).then(|| [mean(0), mean(1)])
+    let mean =
+        |i: usize| (both.iter().map(|pair| pair[i].ln()).sum::<f64>() / both.len() as f64).exp();
+    let most = both.iter().map(|pair| pair[1]).fold(0.0, f64::max);
+    (both.len() >= FEWEST).then(|| [mean(0), mean(1), most])
 }
 
 #[test]
@@ -99,28 +106,6 @@ fn the_corpus_is_whole() {
     );
 }
 
-/// Settings of the ladders that `trade` climbs, and of the path tracer any number of samples: its error falls with them and its time
-/// grows.
-fn is_on_a_ladder(key: &str, renderer: Renderer) -> bool {
-    let needs = Needs {
-        has_specular: true,
-        radius: 1.0,
-    };
-    let ladders = families(needs, Some(renderer));
-    let ladders = ladders.iter().filter(|family| family.is_contender);
-    let mut rungs = ladders.flat_map(|family| &family.rungs).map(|rung| {
-        let pairs = rung
-            .settings
-            .iter()
-            .map(|(key, text)| (*key, text.as_str()));
-        canonical(pairs.chain([("renderer", renderer.name())]))
-    });
-    rungs.any(|rung| rung == key)
-        || (renderer == Renderer::Path
-            && key.starts_with("path samples=")
-            && key.matches('=').count() == 1)
-}
-
 #[test]
 fn no_setting_beats_a_preset() {
     let found = table();
@@ -131,28 +116,16 @@ fn no_setting_beats_a_preset() {
             let pairs = values.into_iter().chain([("renderer", renderer.name())]);
             let key = canonical(pairs);
             let what = format!("{} of {}", quality.name(), renderer.name());
-            let empty = Curve::new();
-            let preset = found.get(&key).unwrap_or(&empty);
-            if preset.len() < FEWEST {
-                assert!(
-                    quality == Quality::Final,
-                    "{what} ({key}) was hardly measured"
-                );
-                let is_default = key == canonical([("renderer", renderer.name())].into_iter());
-                assert!(
-                    is_default || is_on_a_ladder(&key, renderer),
-                    "{what}: {key}"
-                );
-                continue;
-            }
+            let preset = found.get(&key).unwrap_or_else(|| panic!("{what}: {key}"));
+            assert!(preset.len() >= FEWEST, "{what} ({key}) was hardly measured");
             for (other, curve) in &found {
                 if other.split(' ').next() != Some(renderer.name()) {
                     continue;
                 }
-                if let Some([seconds, error]) = ratios(preset, curve) {
+                if let Some([seconds, error, most]) = ratios(preset, curve) {
                     assert!(
-                        seconds > GAIN || error > GAIN,
-                        "{what}: {other} takes {seconds:.2} of its time and has {error:.2} of its error"
+                        seconds > GAIN || error > GAIN || most > HEAVILY,
+                        "{what}: {other} takes {seconds:.2} of its time and has {error:.2} of its error, at most {most:.2}"
                     );
                 }
             }

@@ -221,6 +221,14 @@ pub struct LinearImage {
     pub pixels: Vec<Rgb>,
 }
 
+impl LinearImage {
+    /// Whether it shows no light at all.
+    #[must_use]
+    pub fn is_black(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel.is_black())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,29 +2,38 @@
 //!
 //! They are chosen once, before the first frame, and kept in a file beside the frames: each frame is made with them whenever and wherever it
 //! is made, and depends on nothing else. A wanted time is that of all frames together, with the light that they share, from grown
-//! scenes on; a wanted error is that of each frame. Methods are tried on the frame in the middle; on the first and the last one path tracing
-//! alone tells how much noisier and slower they are.
+//! scenes on; a wanted error is that of each frame. Frames all over the film are path traced at a glance, which tells how much slower and
+//! noisier some are than others; methods are tried on the noisiest of them. The light of the chosen one is solved and measured once more
+//! before the number of samples is settled; for a wanted time, some frames are made with few of them, which tells what they really cost.
 
 use super::choosing::family::Family;
 use super::choosing::law::{Known, Law, Offer};
 use super::choosing::pilot::Pilot;
+use super::choosing::settling::settle;
 use super::choosing::{Chooser, Wish};
 use super::content_hash::ContentHash;
 use super::failure::Failure;
+use super::film_trial::{PLACES, evenly, places, shape};
 use super::filming::{Job, Shooting};
 use super::reel::Reel;
 use super::report::Phase;
+use super::solving::Solved;
+use super::spot_check;
 use super::store::may_write;
 use super::until::Until;
 use super::viewing::Viewing;
 use super::world::{Entry, World};
 use crate::animation::Flight;
+use crate::camera::Camera;
 use crate::options::value::Renderer;
 use crate::options::{Options, Origin};
+use crate::scene::Scene;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// The file beside the frames.
 const FILE: &str = "chosen.toml";
@@ -43,12 +52,39 @@ struct Kept {
     chosen: BTreeMap<String, String>,
 }
 
-/// Path tracing on some frames, relative to the one in the middle.
-struct Spread {
-    /// The most noise of one frame.
-    noise: f64,
-    /// Seconds of a sample, on average.
-    seconds: f64,
+/// Part of a wanted time for all these looks.
+const PART_OF_LOOKS: f64 = 0.05;
+/// Part of the time that is left after which light that is not yet solved is given up.
+const PART_OF_SOLUTION: f64 = 0.8;
+/// So many times the samples that were expected are never taken: then a trial was disturbed.
+const FAR_OFF: u32 = 4;
+/// Part of a wanted time that is planned with once this is known.
+const TRIED: f64 = 0.98;
+
+/// A frame as path tracing finds it at a glance.
+struct Look<'j> {
+    job: &'j Job,
+    path: Law,
+}
+
+/// What turns the laws of a single frame into those of an average one.
+#[derive(Clone, Copy)]
+struct Average {
+    /// The part of what frames share that each pays.
+    of_shared: f64,
+    /// Its seconds for those of the frame that methods are tried on.
+    of_seconds: f64,
+}
+
+impl Average {
+    fn frame(self, law: Law) -> Law {
+        Law {
+            shared: law.shared * self.of_shared,
+            begin: law.begin * self.of_seconds,
+            sample: law.sample * self.of_seconds,
+            ..law
+        }
+    }
 }
 
 impl Shooting<'_, '_> {
@@ -71,7 +107,7 @@ impl Shooting<'_, '_> {
         self.base = match read(world, &path, &key)? {
             Some(chosen) => chooser.apply(&chosen)?,
             None => {
-                let chosen = self.measure(&jobs, &chooser)?;
+                let chosen = self.measured(&jobs, &chooser)?;
                 write(world, &path, &key, &chosen)?;
                 chosen
             }
@@ -84,131 +120,240 @@ impl Shooting<'_, '_> {
                 expected: self.base.samples.value.get(),
             };
         }
-        self.is_checked = true;
+        self.checked = Some(checked(&jobs, wish));
         Ok(())
     }
 
     /// The options for all frames.
-    fn measure(&mut self, jobs: &[Job], chooser: &Chooser) -> Result<Options, Failure> {
-        let Some(middle) = jobs.get(jobs.len() / 2) else {
-            return Ok(self.base.clone());
-        };
-        let begin = self.making.world.now();
-        let (offer, wanted) = self.offer(jobs, middle, chooser)?;
-        let mut offer = offer;
-        // The others, as path tracing finds them.
-        let ends = [jobs.first(), jobs.last()].into_iter().flatten();
-        let ends: Vec<&Job> = ends.filter(|job| job.frame != middle.frame).collect();
-        let is_open = offer.law.sample > 0.0 && chooser.samples.is_none();
-        if is_open && !(offer.offer.family == Family::Path && wanted.is_none()) {
-            let spread = self.spread(&ends, &offer, chooser.wish)?;
-            offer.law.sample *= spread.seconds;
-            offer.law.noise *= spread.noise;
-        }
-        let samples = match (chooser.samples, chooser.wish, wanted) {
-            (Some(n), ..) => n,
-            (None, Wish::Seconds(seconds), Some(_)) => {
-                let spent = self.making.world.now().saturating_sub(begin).as_secs_f64();
-                let each = PLANNED * (seconds - spent).max(0.0) / jobs.len() as f64;
-                offer.law.samples_within(each).max(1)
-            }
-            (None, Wish::Error(error), _) if offer.offer.family != Family::Path => {
-                let n = offer.law.samples_for(error);
-                n.map_or(offer.offer.samples, |n| n.max(offer.offer.samples))
-            }
-            (None, ..) => offer.offer.samples,
-        };
-        let Offer { family, rung, .. } = offer.offer;
-        chooser.with(family, rung, Some(samples))
-    }
-
-    /// What is best for the frame in the middle, with its share of the time if time is what is wanted.
-    fn offer(
-        &mut self,
-        jobs: &[Job],
-        middle: &Job,
-        chooser: &Chooser,
-    ) -> Result<(Measured, Option<f64>), Failure> {
+    fn measured(&mut self, jobs: &[Job], chooser: &Chooser) -> Result<Options, Failure> {
         let world = self.making.world;
         let begin = world.now();
-        let n_scenes = jobs.iter().map(|job| job.scene.to_string());
-        let n_scenes = n_scenes.collect::<BTreeSet<String>>().len() as f64;
-        let n_frames = jobs.len() as f64;
-        self.set_moment(middle.moment.step, middle.moment.sun)?;
-        let scene = self.studio.build(self.run, self.making.cancel)?;
-        let is_judged = Viewing::is_judged(&scene);
-        self.making.audience.begins("measuring");
-        let viewing = self.making.viewing(self.run);
-        let (pilot, known) = self.studio.seconds.time(world, Phase::Prepare, || {
-            let pilot = Pilot::new(&viewing, &scene, &middle.camera, chooser.wish)?;
-            let known = chooser.explore(&viewing, (&scene, &middle.camera), &pilot)?;
-            Ok::<_, Failure>((pilot, known))
-        })?;
-        // A frame pays for its part of what frames share.
-        let part = n_scenes / n_frames;
-        let of_frame = |known: &Known| Known {
-            law: Law {
-                shared: known.law.shared * part,
-                ..known.law
-            },
-            ..*known
+        let looks = self.looks(jobs, chooser.wish)?;
+        let Some(choice) = self.measure(jobs, &looks, chooser)? else {
+            return Ok(self.base.clone());
         };
-        let known: Vec<Known> = known.iter().map(of_frame).collect();
+        let of = |samples| chooser.with(choice.family, choice.rung, Some(samples));
+        let chosen = of(choice.samples)?;
+        let Wish::Seconds(seconds) = chooser.wish else {
+            return Ok(chosen);
+        };
+        let shape = shape(choice.samples, jobs.len());
+        let is_open = chooser.samples.is_none() && n_scenes(jobs) == 1.0;
+        let Some((n, most)) = shape.filter(|_| is_open) else {
+            return Ok(chosen);
+        };
+        let some: Vec<&Look<'_>> = evenly(looks.len(), n).map(|at| &looks[at]).collect();
+        let places: Vec<&Job> = some.iter().map(|look| look.job).collect();
+        let law = self.trial(&places, jobs.len(), (&of(1)?, &of(most)?))?;
+        let tried = some.iter().map(|look| look.path.sample).sum::<f64>() / n as f64;
+        let average = Average {
+            of_shared: 1.0,
+            of_seconds: mean_seconds(&looks) / tried.max(f64::MIN_POSITIVE),
+        };
+        let law = average.frame(law);
         let spent = world.now().saturating_sub(begin).as_secs_f64();
-        let wanted = match chooser.wish {
-            Wish::Seconds(seconds) => Some((seconds - spent).max(0.0) / n_frames),
-            Wish::Error(_) => None,
-        };
-        let best = chooser.best(&known, wanted.unwrap_or(f64::INFINITY));
-        let offer = best.unwrap_or_else(|| chooser.last_resort(&known, is_judged));
-        let law = known.iter().find(|known| known.family == offer.family);
-        let law = law.map_or(Law::default(), |k| k.law.climbed(k.family, offer.rung));
-        let measured = Measured {
-            offer,
-            law,
-            path: pilot.path,
-        };
-        Ok((measured, wanted))
+        let each = TRIED * (seconds - spent).max(0.0) / jobs.len() as f64;
+        of(law.samples_within(each).clamp(1, FAR_OFF * choice.samples))
     }
 
-    /// How other frames differ from the one that was measured.
-    fn spread(
+    /// The method, rung and samples for all frames.
+    fn measure(
         &mut self,
-        others: &[&Job],
-        measured: &Measured,
-        wish: Wish,
-    ) -> Result<Spread, Failure> {
-        let mut spread = Spread {
-            noise: 1.0,
-            seconds: 1.0,
+        jobs: &[Job],
+        looks: &[Look<'_>],
+        whole: &Chooser,
+    ) -> Result<Option<Offer>, Failure> {
+        let world = self.making.world;
+        let begin = world.now();
+        let noise = |look: &Look<'_>| look.path.noise;
+        let hardest = looks.iter().max_by(|a, b| noise(a).total_cmp(&noise(b)));
+        let Some(&Look { job, path }) = hardest else {
+            return Ok(None);
         };
-        let mut seconds = vec![1.0];
-        for job in others {
-            self.set_moment(job.moment.step, job.moment.sun)?;
-            let scene = self.studio.build(self.run, self.making.cancel)?;
+        let average = Average {
+            of_shared: n_scenes(jobs) / jobs.len() as f64,
+            of_seconds: mean_seconds(looks) / path.sample.max(f64::MIN_POSITIVE),
+        };
+        let scene = self.scene(job)?;
+        let pilot = self.pilot((&scene, &job.camera), whole.wish)?;
+        let known = self.explore((&scene, &job.camera), whole, &pilot)?;
+        let checked = checked(jobs, whole.wish).len() as f64 / jobs.len() as f64;
+        let of_frame = |law: Law, family| average.frame(with_check(law, family, &pilot, checked));
+        let known: Vec<Known> = known
+            .iter()
+            .map(|known| Known {
+                law: of_frame(known.law, known.family),
+                ..*known
+            })
+            .collect();
+        let spent = world.now().saturating_sub(begin).as_secs_f64();
+        let chooser = &of_each(whole, spent, jobs.len());
+        let seconds = match chooser.wish {
+            Wish::Seconds(seconds) => seconds,
+            Wish::Error(_) => f64::INFINITY,
+        };
+        let is_judged = Viewing::is_judged(&scene);
+        let best = chooser.best(&known, seconds);
+        let offer = best.unwrap_or_else(|| chooser.last_resort(&known, is_judged));
+        let path = chooser.path_offer(&average.frame(pilot.path));
+        let path_seconds = (chooser.is_free() && is_judged).then_some(path.seconds);
+        let mut light = None;
+        let limit = match whole.wish {
+            Wish::Seconds(seconds) if path_seconds.is_some() => {
+                Duration::try_from_secs_f64(PART_OF_SOLUTION * (seconds - spent).max(0.0))
+            }
+            _ => Ok(Duration::MAX),
+        };
+        let limit = limit.unwrap_or(Duration::MAX);
+        let settled = settle(chooser, offer, path_seconds, |offer| {
+            if !offer.family.has_rungs() {
+                return Ok(((), None));
+            }
+            light = None;
+            let options = chooser.with(offer.family, offer.rung, Some(offer.samples))?;
+            let (solved, law) = self.solved((job, &scene), options, &pilot, limit)?;
+            light = Some(solved);
+            Ok(((), Some(of_frame(law, offer.family))))
+        })?;
+        let offer = settled.map_or(path, |(offer, ())| offer);
+        if let Some(solved) = light.filter(|_| offer.family.has_rungs()) {
+            self.enter_with(job, scene.clone(), solved);
+        }
+        Ok(Some(offer))
+    }
+
+    /// Path traces frames all over the film at a glance.
+    fn looks<'j>(&mut self, jobs: &'j [Job], wish: Wish) -> Result<Vec<Look<'j>>, Failure> {
+        let seconds = match wish {
+            Wish::Seconds(seconds) => PART_OF_LOOKS * seconds / PLACES as f64,
+            Wish::Error(_) => f64::INFINITY,
+        };
+        let places = places(jobs);
+        let mut looks = Vec::new();
+        for group in places.chunk_by(|a, b| a.scene == b.scene) {
+            let scene = self.scene(group[0])?;
             self.making.audience.begins("measuring");
             let viewing = self.making.viewing(self.run);
-            let new = || Pilot::new(&viewing, &scene, &job.camera, wish);
-            let pilot = self
-                .studio
-                .seconds
-                .time(self.making.world, Phase::Prepare, new)?;
-            let ratio = |here: f64, there: f64| if there > 0.0 { here / there } else { 1.0 };
-            spread.noise = spread
-                .noise
-                .max(ratio(pilot.path.noise, measured.path.noise));
-            seconds.push(ratio(pilot.path.sample, measured.path.sample));
+            let look = || {
+                let judge = viewing.judge(&scene)?;
+                let glance = |job: &&'j Job| {
+                    let path = Pilot::glance(&viewing, (&*judge, &job.camera), seconds)?;
+                    Ok(Look { job, path })
+                };
+                group
+                    .iter()
+                    .map(glance)
+                    .collect::<Result<Vec<_>, Failure>>()
+            };
+            let phases = &mut self.studio.seconds;
+            looks.extend(phases.time(self.making.world, Phase::Prepare, look)?);
         }
-        spread.seconds = seconds.iter().sum::<f64>() / seconds.len() as f64;
-        Ok(spread)
+        Ok(looks)
+    }
+
+    /// The scene of a frame, which the options then are those of.
+    fn scene(&mut self, job: &Job) -> Result<Arc<Scene>, Failure> {
+        self.set_moment(job.moment.step, job.moment.sun)?;
+        self.studio.build(self.run, self.making.cancel)
+    }
+
+    fn pilot<'s>(
+        &mut self,
+        (scene, camera): (&'s Scene, &Camera),
+        wish: Wish,
+    ) -> Result<Pilot<'s>, Failure> {
+        self.making.audience.begins("measuring");
+        let viewing = self.making.viewing(self.run);
+        let new = || Pilot::new(&viewing, scene, camera, wish);
+        self.studio
+            .seconds
+            .time(self.making.world, Phase::Prepare, new)
+    }
+
+    /// Tries the methods that are open on one frame.
+    fn explore(
+        &mut self,
+        sight: (&Scene, &Camera),
+        chooser: &Chooser,
+        pilot: &Pilot<'_>,
+    ) -> Result<Vec<Known>, Failure> {
+        let viewing = self.making.viewing(self.run);
+        let explore = || chooser.explore(&viewing, sight, pilot);
+        self.studio
+            .seconds
+            .time(self.making.world, Phase::Prepare, explore)
+    }
+
+    /// The light of an offer, solved within so much time, and what it costs and gives in one frame.
+    fn solved(
+        &mut self,
+        (job, scene): (&Job, &Arc<Scene>),
+        options: Options,
+        pilot: &Pilot<'_>,
+        limit: Duration,
+    ) -> Result<(Solved, Law), Failure> {
+        let world = self.making.world;
+        let before = std::mem::replace(&mut self.base, options);
+        let moment = self.set_moment(job.moment.step, job.moment.sun);
+        self.base = before;
+        moment?;
+        self.making.audience.begins("preparing");
+        let viewing = self.making.viewing(self.run);
+        let begin = world.now();
+        let (studio, run) = (&mut *self.studio, &*self.run);
+        let solved = viewing.within(limit, |viewing| studio.solve(run, scene, viewing))?;
+        let too_long = || Failure::World("the light takes longer than is wanted".into());
+        let solved = solved.ok_or_else(too_long)?;
+        let shared = world.now().saturating_sub(begin).as_secs_f64();
+        self.making.audience.begins("measuring");
+        let measure = || pilot.measure(&viewing, (scene, &job.camera), (&solved.solution, shared));
+        let law = self.studio.seconds.time(world, Phase::Prepare, measure)?;
+        Ok((solved, law))
     }
 }
 
-/// An offer with the law that it was made by, and that of path tracing.
-struct Measured {
-    offer: Offer,
-    law: Law,
-    path: Law,
+/// The wish for each of so many frames: its part of the seconds that are left.
+fn of_each(chooser: &Chooser, spent: f64, n_frames: usize) -> Chooser {
+    chooser.wishing(match chooser.wish {
+        Wish::Seconds(seconds) => {
+            Wish::Seconds(PLANNED * (seconds - spent).max(0.0) / n_frames as f64)
+        }
+        error @ Wish::Error(_) => error,
+    })
+}
+
+/// How many scenes the frames show.
+fn n_scenes(jobs: &[Job]) -> f64 {
+    let scenes: BTreeSet<String> = jobs.iter().map(|job| job.scene.to_string()).collect();
+    scenes.len() as f64
+}
+
+/// Seconds of a sample of each pixel, on average.
+fn mean_seconds(looks: &[Look<'_>]) -> f64 {
+    looks.iter().map(|look| look.path.sample).sum::<f64>() / looks.len() as f64
+}
+
+/// Frames that path tracing checks once they are made: all where each was promised an error, some where that would cost a part of the
+/// wanted time.
+fn checked(jobs: &[Job], wish: Wish) -> BTreeSet<u32> {
+    match wish {
+        Wish::Error(_) => jobs.iter().map(|job| job.frame).collect(),
+        Wish::Seconds(_) => places(jobs).iter().map(|job| job.frame).collect(),
+    }
+}
+
+/// The law of a frame where a part of all frames is checked; those that were path traced are not.
+fn with_check(law: Law, family: Family, pilot: &Pilot<'_>, part: f64) -> Law {
+    if family == Family::Path {
+        return law;
+    }
+    let (at_least, of_sample) = spot_check::share_of_samples();
+    Law {
+        shared: law.shared + part * pilot.path.shared,
+        begin: law.begin + part * at_least * pilot.seconds_of_sample,
+        sample: law.sample + part * of_sample * pilot.path.sample,
+        ..law
+    }
 }
 
 /// What was chosen for the film with this key.

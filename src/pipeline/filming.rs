@@ -9,26 +9,26 @@ use super::course;
 use super::exposing;
 use super::failure::Failure;
 use super::frame::{FrameAudience, describe};
-use super::making::{Made, Making};
+use super::making::{Made, Making, UNLIT};
 use super::reel::Reel;
 use super::report::{Effort, Phase, SolutionFacts};
 use super::solving::Solved;
+use super::spot_check::samples_of_half;
 use super::studio::{Run, Studio};
 use super::until::Until;
 use super::viewing::{Prepared, Viewing};
 use super::viewpoint;
-use crate::animation::flicker::{self, Flicker, FlickerMeter};
+use crate::animation::flicker::Flicker;
 use crate::animation::plan;
 use crate::animation::{FilmShape, Flight, Moment};
 use crate::camera::{Camera, View};
-use crate::film::LinearImage;
-use crate::image::{Format, Picture, Pixels};
+use crate::image::Picture;
+use crate::integrator::RadianceEstimator;
+use crate::options::value::Renderer;
 use crate::options::{Options, Origin};
 use crate::scene::Scene;
+use std::collections::BTreeSet;
 use std::sync::Arc;
-
-/// Added to the seed of frames that are rendered again to measure flicker.
-const OTHER_SEED: i64 = 0x0066_6c69_636b_6572;
 
 /// A frame to be.
 pub(super) struct Job {
@@ -43,7 +43,7 @@ pub(super) struct Job {
 
 impl Job {
     /// The factor for its radiance where that of the film is this one.
-    fn exposed(&self, film: f64) -> f64 {
+    pub(super) fn exposed(&self, film: f64) -> f64 {
         film * exposing::factor(self.moment.stops)
     }
 }
@@ -64,8 +64,8 @@ pub(super) struct Shooting<'a, 'w> {
     pub(super) base: Options,
     /// When a frame is done.
     pub(super) until: Until,
-    /// Whether frames are judged by path tracing.
-    pub(super) is_checked: bool,
+    /// Where the film has a wanted time or error: frames that path tracing checks, unless it made them.
+    pub(super) checked: Option<BTreeSet<u32>>,
     set: Option<Set>,
     done: Done,
 }
@@ -75,6 +75,10 @@ pub(super) struct Shooting<'a, 'w> {
 struct Done {
     hashes: Vec<(u32, ContentHash)>,
     effort: Option<Effort>,
+    /// Frames whose error is known.
+    n_judged: u32,
+    /// Frames that show no light at all.
+    black: Vec<u32>,
     n_kept: u32,
     n_made: u32,
     warnings: Option<Vec<&'static str>>,
@@ -155,7 +159,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
             base: run.options.clone(),
             run,
             until: Until::Samples,
-            is_checked: false,
+            checked: None,
             set: None,
             done: Done::default(),
         }
@@ -235,11 +239,18 @@ impl<'a, 'w> Shooting<'a, 'w> {
         self.set_moment(job.moment.step, job.moment.sun)?;
         let scene = self.studio.build(self.run, self.making.cancel)?;
         let viewing = self.making.viewing(self.run);
-        if self.done.warnings.is_none() {
-            self.done.warnings = Some(self.making.warn(self.run, &viewing, &scene));
-        }
         self.making.audience.begins("preparing");
         let solved = self.studio.solve(self.run, &scene, &viewing)?;
+        self.enter_with(job, scene, solved);
+        Ok(())
+    }
+
+    /// Keeps the scene of a frame with its light, so that frames which show it have them.
+    pub(super) fn enter_with(&mut self, job: &Job, scene: Arc<Scene>, solved: Solved) {
+        if self.done.warnings.is_none() {
+            let viewing = self.making.viewing(self.run);
+            self.done.warnings = Some(self.making.warn(self.run, &viewing, &scene));
+        }
         solved.warn(self.making.audience, &self.run.sources.map);
         self.done.solution = solved.facts;
         self.set = Some(Set {
@@ -247,11 +258,10 @@ impl<'a, 'w> Shooting<'a, 'w> {
             scene,
             solved,
         });
-        Ok(())
     }
 
     /// Looks at the scene of a frame, with these options.
-    fn look<T>(
+    pub(super) fn look<T>(
         &mut self,
         job: &Job,
         options: &Options,
@@ -296,7 +306,17 @@ impl<'a, 'w> Shooting<'a, 'w> {
         for group in missing.chunk_by(|a, b| a.scene == b.scene) {
             let Some(first) = group.first() else { continue };
             let options = self.base.clone();
-            let is_whole = self.look(first, &options, |this, _, prepared| {
+            let is_whole = self.look(first, &options, |this, scene, prepared| {
+                let viewing = this.making.viewing(this.run);
+                let checked = this.checked.as_ref();
+                let is_checked = |job: &&Job| checked.is_some_and(|c| c.contains(&job.frame));
+                let judge = || viewing.needed_judge(scene);
+                let judge = if group.iter().any(is_checked) {
+                    let phases = &mut this.studio.seconds;
+                    phases.time(this.making.world, Phase::Check, judge)?
+                } else {
+                    None
+                };
                 this.making.audience.begins("flying");
                 for job in group {
                     let progress = FrameAudience {
@@ -305,7 +325,8 @@ impl<'a, 'w> Shooting<'a, 'w> {
                         n_frames,
                     };
                     index += 1;
-                    if !this.shoot_one(job, prepared, &progress, reel, exposure)? {
+                    let ready = (prepared, judge.as_deref());
+                    if !this.shoot_one(job, ready, &progress, reel, exposure)? {
                         return Ok(false);
                     }
                 }
@@ -328,7 +349,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
     fn shoot_one(
         &mut self,
         job: &Job,
-        prepared: &Prepared<'_>,
+        (prepared, judge): (&Prepared<'_>, Option<&dyn RadianceEstimator>),
         progress: &FrameAudience<'_>,
         reel: &Reel,
         exposure: f64,
@@ -343,9 +364,16 @@ impl<'a, 'w> Shooting<'a, 'w> {
         if !shot.is_whole {
             return Ok(false);
         }
-        if let Some(set) = self.set.as_ref().filter(|_| self.is_checked) {
-            let check = || viewing.judged(&set.scene, &job.camera, &shot);
+        let is_path = viewing.options.renderer.value == Renderer::Path;
+        if let Some(checked) = self.checked.as_ref().filter(|_| !is_path) {
+            let n = samples_of_half(shot.effort.n_samples);
+            let judge = judge.filter(|_| checked.contains(&job.frame));
+            let check = |judge| viewing.spot_check(judge, &job.camera, &shot, n);
+            let check = || judge.map(check).transpose();
             shot.effort.error = self.studio.seconds.time(world, Phase::Check, check)?;
+        }
+        if shot.image.is_black() {
+            self.done.black.push(job.frame);
         }
         let run = &*self.run;
         let hash = self.studio.seconds.time(world, Phase::Write, || {
@@ -357,77 +385,6 @@ impl<'a, 'w> Shooting<'a, 'w> {
         })?;
         self.done.make(job.frame, hash, shot.effort);
         Ok(true)
-    }
-
-    /// Renders pairs of frames again with other random numbers and compares.
-    fn flicker(
-        &mut self,
-        jobs: &[Job],
-        frames: std::ops::Range<u32>,
-        reel: &Reel,
-        exposure: f64,
-    ) -> Result<Option<Flicker>, Failure> {
-        let pairs = flicker::pairs(frames.end - frames.start, self.base.flicker.value);
-        let mut meter = FlickerMeter::default();
-        for (index, first) in (0..).zip(&pairs) {
-            let world = self.making.world;
-            let at = frames.start + first;
-            let pair = [&jobs[at as usize], &jobs[at as usize + 1]];
-            let mut film = Vec::new();
-            let mut again = Vec::new();
-            for (second, job) in (0..).zip(pair) {
-                let exposure = job.exposed(exposure);
-                film.push(reel.shown(world, job.frame, exposure)?);
-                let index = 2 * index + second;
-                let n_frames = 2 * pairs.len() as u64;
-                let image = match self.again(job, index, n_frames) {
-                    Ok(Some(image)) => image,
-                    // The film itself is there.
-                    Ok(None) | Err(Failure::Stopped) => return Ok(None),
-                    Err(failure) => return Err(failure),
-                };
-                let picture = exposing::develop(&image, Format::Png, exposure);
-                match picture.pixels {
-                    Pixels::Srgb(bytes) => again.push(bytes),
-                    Pixels::Linear(_) => unreachable!("invariant: PNG is sRGB"),
-                }
-            }
-            meter.add([&film[0], &film[1]], [&again[0], &again[1]]);
-        }
-        self.making.audience.ends();
-        Ok(meter.result())
-    }
-
-    /// A frame made with other random numbers; `None` if it was stopped.
-    fn again(
-        &mut self,
-        job: &Job,
-        index: u64,
-        n_frames: u64,
-    ) -> Result<Option<LinearImage>, Failure> {
-        let mut options = self.base.clone();
-        let seed = options.seed.value.wrapping_add(OTHER_SEED).to_string();
-        options
-            .set("seed", &seed, Origin::Flag)
-            .map_err(|error| Failure::Usage(error.to_string()))?;
-        let base = self.base.clone();
-        self.look(job, &base, |this, _, prepared| {
-            this.making.audience.begins("measuring flicker");
-            let progress = FrameAudience {
-                audience: this.making.audience,
-                index,
-                n_frames,
-            };
-            let viewing = Viewing {
-                audience: &progress,
-                options: &options,
-                ..this.making.viewing(this.run)
-            };
-            let world = this.making.world;
-            let shoot = || viewing.take(prepared, &job.camera, this.until, &mut |_| {});
-            let shot = this.studio.seconds.time(world, Phase::Render, shoot)?;
-            Ok(shot.is_whole.then_some(shot.image))
-        })
     }
 
     fn assemble(&mut self, reel: &Reel, shape: FilmShape) -> Result<Option<ContentHash>, Failure> {
@@ -453,7 +410,19 @@ impl<'a, 'w> Shooting<'a, 'w> {
             }
             Until::Samples | Until::Time(_) => told(self.run).into_iter().collect(),
         };
+        let mut notes = notes;
         let mut done = self.done;
+        let error = done.effort.and_then(|effort| effort.error);
+        notes.extend(error.map(|error| match done.n_judged {
+            n if n == done.n_made => {
+                format!("estimated error of the worst frame: {}", error.text())
+            }
+            n => format!(
+                "estimated error of the worst of {n} frames: {}",
+                error.text()
+            ),
+        }));
+        notes.extend(told_black(&done.black, done.n_made));
         done.hashes.sort_unstable_by_key(|(frame, _)| *frame);
         let all: String = done
             .hashes
@@ -475,6 +444,19 @@ impl<'a, 'w> Shooting<'a, 'w> {
     }
 }
 
+/// What people are told of black frames among those that were made.
+fn told_black(black: &[u32], n_made: u32) -> Option<String> {
+    let (first, last) = (black.first()?, black.last()?);
+    let n = black.len();
+    Some(if n == n_made as usize {
+        format!("all frames are black: {UNLIT}")
+    } else {
+        format!(
+            "{n} of {n_made} frames are black (the first is frame {first}, the last frame {last}): {UNLIT}"
+        )
+    })
+}
+
 impl Done {
     fn keep(&mut self, frame: u32, hash: ContentHash) {
         self.hashes.push((frame, hash));
@@ -483,6 +465,7 @@ impl Done {
 
     fn make(&mut self, frame: u32, hash: ContentHash, effort: Effort) {
         self.hashes.push((frame, hash));
+        self.n_judged += u32::from(effort.error.is_some());
         self.effort = Some(self.effort.map_or(effort, |all| all.and(effort)));
         self.n_made += 1;
     }

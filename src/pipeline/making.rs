@@ -43,6 +43,9 @@ pub struct Made {
     pub notes: Vec<String>,
 }
 
+/// What people are told of a black picture.
+pub(super) const UNLIT: &str = "no light reaches what the camera sees; `--eye` and `--target` look elsewhere, `--sun` and lamps give light";
+
 /// What becomes of a picture that was stopped before it had all its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Partial {
@@ -141,12 +144,15 @@ impl Making<'_> {
             shot,
             exposure,
             facts,
-            notes,
+            mut notes,
         } = taken;
         if !shot.is_whole && self.partial == Partial::Drop {
             return Err(Failure::Stopped);
         }
         let warnings = early.unwrap_or_else(|| self.warn(run, &self.viewing(run), scene));
+        if shot.image.is_black() {
+            notes.push(format!("the picture is black: {UNLIT}"));
+        }
         let hash = studio.seconds.time(self.world, Phase::Write, || {
             let picture = exposing::develop(&shot.image, target.format(), exposure);
             target.write(self.world, &picture, &run.texts())

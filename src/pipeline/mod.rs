@@ -17,6 +17,8 @@ pub mod exporting;
 pub mod exposing;
 pub mod failure;
 mod film_choice;
+mod film_flicker;
+mod film_trial;
 pub mod filming;
 mod frame;
 pub mod growing;

@@ -157,7 +157,7 @@ pub struct Effort {
     pub samples_per_pixel: u32,
     /// Samples of all pixels together.
     pub n_samples: u64,
-    /// Estimated error of the picture (the largest, of several); `None` if it cannot be told.
+    /// Estimated error of the picture (the largest that is known, of several); `None` if it cannot be told.
     pub error: Option<PictureError>,
 }
 
@@ -218,12 +218,12 @@ impl Effort {
     /// This and another picture of the same film.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let both = self.error.zip(other.error);
+        let worst = |a: PictureError, b: PictureError| if a.relative < b.relative { b } else { a };
         Self {
             n_rays: self.n_rays + other.n_rays,
             samples_per_pixel: self.samples_per_pixel.min(other.samples_per_pixel),
             n_samples: self.n_samples + other.n_samples,
-            error: both.map(|(a, b)| if a.relative < b.relative { b } else { a }),
+            error: self.error.into_iter().chain(other.error).reduce(worst),
         }
     }
 }
@@ -538,5 +538,11 @@ mod tests {
         };
         assert_eq!(error(0.1).text(), "10.0 % ± 2.0 %, noise and bias");
         assert_eq!(one.and(other), both);
+        let unknown = Effort {
+            error: None,
+            ..other
+        };
+        assert_eq!(one.and(unknown).error, one.error);
+        assert_eq!(unknown.and(one).error, one.error);
     }
 }

@@ -85,6 +85,13 @@ pub fn samples_of_half(picture_samples: u64) -> u32 {
     1 << n.ilog2()
 }
 
+/// Path-traced samples of the check of a picture, at most: so many in any case, and so many for each sample of the picture.
+#[must_use]
+pub fn share_of_samples() -> (f64, f64) {
+    let fewest = 2 * SPOTS * SAMPLES_OF_HALF.start;
+    (f64::from(fewest), 1.0 / PICTURE_SAMPLES as f64)
+}
+
 impl Spots {
     /// Draws about `most` pixels, at least 1, of a picture of this size; all, if it has no more.
     #[must_use]

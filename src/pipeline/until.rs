@@ -248,26 +248,17 @@ impl Viewing<'_> {
         Ok(spots.error_of_image(image).root())
     }
 
-    /// How wrong a picture of a scene is: of path tracing its own noise; otherwise what a check of its own finds, if path tracing finds
-    /// all light there.
+    /// What tells how wrong pictures of a scene are: nothing for path tracing, whose own noise tells, and where path tracing does not find
+    /// all light.
     ///
     /// # Errors
     /// If it was stopped.
-    pub(super) fn judged(
+    pub(super) fn needed_judge<'s>(
         &self,
-        scene: &Scene,
-        camera: &Camera,
-        shot: &Shot,
-    ) -> Result<Option<PictureError>, Failure> {
-        if self.options.renderer.value == Renderer::Path {
-            return Ok(shot.effort.error);
-        }
-        if !Self::is_judged(scene) {
-            return Ok(None);
-        }
-        let n = spot_check::samples_of_half(shot.effort.n_samples);
-        let judge = self.judge(scene)?;
-        self.spot_check(&*judge, camera, shot, n).map(Some)
+        scene: &'s Scene,
+    ) -> Result<Option<Box<dyn RadianceEstimator + 's>>, Failure> {
+        let is_needed = self.options.renderer.value != Renderer::Path && Self::is_judged(scene);
+        is_needed.then(|| self.judge(scene)).transpose()
     }
 
     /// Seeds of checks, other than those of pictures and of each other.

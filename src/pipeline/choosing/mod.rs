@@ -16,6 +16,7 @@
 pub mod family;
 pub mod law;
 pub mod pilot;
+pub mod settling;
 
 use super::failure::Failure;
 use super::studio::Run;
@@ -129,11 +130,11 @@ impl Chooser {
         }
     }
 
-    /// The same for a wanted error of another size.
+    /// The same for another wish.
     #[must_use]
-    pub fn aiming(&self, error: f64) -> Self {
+    pub fn wishing(&self, wish: Wish) -> Self {
         Self {
-            wish: Wish::Error(error),
+            wish,
             base: self.base.clone(),
             ..*self
         }

@@ -31,6 +31,8 @@ const OWN_PRECISION: f64 = 0.05;
 const PART_OF_TIME: f64 = 0.05;
 /// Part of the samples of a whole path-traced picture that its pilot takes at most.
 const PART_OF_SAMPLES: f64 = 0.05;
+/// Samples of each pixel for a glance, at most.
+const GLANCE: u32 = 16;
 
 /// Some pixels of a picture and their truth.
 pub struct Pilot<'s> {
@@ -59,60 +61,50 @@ impl<'s> Pilot<'s> {
         camera: &Camera,
         wish: Wish,
     ) -> Result<Self, Failure> {
-        let world = viewing.world;
-        let begin = world.now();
-        let judge = viewing.judge(scene)?;
-        let ready = world.now();
-        let size = viewing.options.size.value;
-        let context = RenderContext {
-            seed: viewing.check_seed(2),
-            ..viewing.context(viewing.cancel, &|_| {})
-        };
-        let mut truth = Spots::draw((size.width, size.height), SPOTS, context.seed);
-        let n_spots = truth.pixels.len().max(1) as f64;
-        let n_pixels = size.pixels() as f64;
-        let settings = everywhere(viewing);
-        let mut samples = FIRST_SAMPLES;
-        loop {
-            truth
-                .sample(&*judge, camera, &settings, samples, &context)
-                .map_err(|error| failure(&error))?;
-            let passed = world.now().saturating_sub(ready).as_secs_f64();
-            let noise = truth.noise().mean * f64::from(samples);
-            let is_enough = match wish {
-                // The next step takes as long as all before.
-                Wish::Seconds(seconds) => 2.0 * passed > PART_OF_TIME * seconds,
-                Wish::Error(error) => {
-                    let is_known = truth.judge_error() <= PRECISION * error * error;
-                    let whole = noise / (error * error) * n_pixels / n_spots;
-                    let n = f64::from(samples);
-                    n >= FEWEST && (is_known || n >= PART_OF_SAMPLES * whole)
-                }
-            };
-            if is_enough || samples >= MOST_SAMPLES {
-                break;
+        let n_pixels = viewing.options.size.value.pixels() as f64;
+        let is_enough = |truth: &Spots, samples: u32, passed: f64| match wish {
+            // The next step takes as long as all before.
+            Wish::Seconds(seconds) => 2.0 * passed > PART_OF_TIME * seconds,
+            Wish::Error(error) => {
+                let is_known = truth.judge_error() <= PRECISION * error * error;
+                let n = f64::from(samples);
+                let n_spots = truth.pixels.len().max(1) as f64;
+                let whole = truth.noise().mean * n / (error * error) * n_pixels / n_spots;
+                n >= FEWEST && (is_known || n >= PART_OF_SAMPLES * whole)
             }
-            samples *= 2;
-        }
-        let seconds = world.now().saturating_sub(ready).as_secs_f64();
-        let seconds_of_sample = seconds / (f64::from(samples) * n_spots);
-        let path = Law {
-            shared: (ready.saturating_sub(begin)).as_secs_f64(),
-            sample: seconds_of_sample * n_pixels,
-            noise: truth.noise().mean * f64::from(samples),
-            ..Law::default()
         };
+        let begin = viewing.world.now();
+        let judge = viewing.judge(scene)?;
+        let shared = viewing.world.now().saturating_sub(begin).as_secs_f64();
+        let (truth, path) = sampled(viewing, (&*judge, camera), is_enough)?;
+        let path = Law { shared, ..path };
+        let share = n_pixels / truth.pixels.len().max(1) as f64;
         Ok(Self {
             judge,
             truth,
             path,
-            seconds_of_sample,
-            share: n_pixels / n_spots,
+            seconds_of_sample: path.sample / n_pixels.max(1.0),
+            share,
             wanted: match wish {
                 Wish::Error(error) => Some(error * error),
                 Wish::Seconds(_) => None,
             },
         })
+    }
+
+    /// What path tracing by a judge that is ready costs and how noisy it is, from few samples that take no more than about so many seconds:
+    /// enough to compare views.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub fn glance(
+        viewing: &Viewing<'_>,
+        (judge, camera): (&dyn RadianceEstimator, &Camera),
+        seconds: f64,
+    ) -> Result<Law, Failure> {
+        let is_enough =
+            |_: &Spots, samples: u32, passed: f64| samples >= GLANCE || 2.0 * passed > seconds;
+        sampled(viewing, (judge, camera), is_enough).map(|(_, path)| path)
     }
 
     /// Samples of each pixel that were taken for the truth.
@@ -172,6 +164,41 @@ impl<'s> Pilot<'s> {
             judge_error: self.truth.judge_error().min(bias.standard_error),
         })
     }
+}
+
+/// Path traces some pixels of the picture, twice as many samples in each step, until these samples, which took so many seconds, are enough.
+fn sampled(
+    viewing: &Viewing<'_>,
+    (judge, camera): (&dyn RadianceEstimator, &Camera),
+    is_enough: impl Fn(&Spots, u32, f64) -> bool,
+) -> Result<(Spots, Law), Failure> {
+    let world = viewing.world;
+    let begin = world.now();
+    let passed = || world.now().saturating_sub(begin).as_secs_f64();
+    let size = viewing.options.size.value;
+    let context = RenderContext {
+        seed: viewing.check_seed(2),
+        ..viewing.context(viewing.cancel, &|_| {})
+    };
+    let mut truth = Spots::draw((size.width, size.height), SPOTS, context.seed);
+    let settings = everywhere(viewing);
+    let mut samples = FIRST_SAMPLES;
+    loop {
+        truth
+            .sample(judge, camera, &settings, samples, &context)
+            .map_err(|error| failure(&error))?;
+        if samples >= MOST_SAMPLES || is_enough(&truth, samples, passed()) {
+            break;
+        }
+        samples *= 2;
+    }
+    let n_spots = truth.pixels.len().max(1) as f64;
+    let path = Law {
+        sample: passed() / (f64::from(samples) * n_spots) * size.pixels() as f64,
+        noise: truth.noise().mean * f64::from(samples),
+        ..Law::default()
+    };
+    Ok((truth, path))
 }
 
 /// An error without that part of it.

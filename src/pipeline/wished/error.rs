@@ -1,9 +1,10 @@
 //! The picture that has a wanted error soonest.
 
 use super::{Sight, Taken, Taking};
-use crate::pipeline::choosing::family::{Family, TOP};
+use crate::pipeline::choosing::family::Family;
 use crate::pipeline::choosing::law::{Law, Offer};
 use crate::pipeline::choosing::pilot::Pilot;
+use crate::pipeline::choosing::settling::settle;
 use crate::pipeline::choosing::{Chooser, Wish, readable, told};
 use crate::pipeline::failure::Failure;
 use crate::pipeline::report::{Phase, PictureError};
@@ -11,29 +12,12 @@ use crate::pipeline::solving::Solved;
 use crate::pipeline::spot_check::samples_of_half;
 use crate::pipeline::until::Until;
 use crate::pipeline::viewing::{Shot, Viewing};
-use std::ops::RangeInclusive;
 
-/// A rung that leaves more than this part of the bias has gained nothing.
-const NO_GAIN: f64 = 0.8;
-/// Where bias keeps a wanted error out of reach, noise alone is brought to this part of it.
-const NOISE_BESIDE_BIAS: f64 = 0.5;
-/// The fewest and the most samples that are taken then.
-const SAMPLES_BESIDE_BIAS: RangeInclusive<f64> = 4.0..=4096.0;
 /// A picture that misses the wanted error is made again so many times by the same method: what misses by little is brought there sooner
 /// than by another.
 const AGAIN: u32 = 2;
 /// It then aims at this part of what it aimed at, times the wanted error over that of the picture.
 const BELOW: f64 = 0.9;
-
-/// What becomes of an offer once its light is solved.
-enum Verdict {
-    /// It keeps the wish.
-    Kept(Offer),
-    /// The rung above may.
-    Climb(Offer),
-    /// Path tracing does sooner.
-    Dropped,
-}
 
 /// What error is aimed at, so that the wanted one is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +60,12 @@ impl<'s> Taking<'_, '_, '_, 's> {
         let mut aim = Aim::new(wanted);
         let (shot, exposure, solved) = loop {
             let rest = path_seconds.filter(|_| is_open);
-            let settled = self.settle(&chooser.aiming(aim.error), &pilot, offer, rest)?;
+            let settled = self.settle(
+                &chooser.wishing(Wish::Error(aim.error)),
+                &pilot,
+                offer,
+                rest,
+            )?;
             let Some((settled, solved)) = settled else {
                 offer = chooser.path_offer(&pilot.path);
                 continue;
@@ -155,8 +144,8 @@ impl<'s> Taking<'_, '_, '_, 's> {
         Ok((shot, exposure))
     }
 
-    /// Solves the light of an offer and measures again what comes of it: rung by rung until it keeps the wanted error. `None` if path tracing,
-    /// in so many seconds, is the better way.
+    /// Solves the light of an offer, or of one that keeps the wanted error once its light was measured. `None` if path tracing, in so many
+    /// seconds, is the better way.
     fn settle(
         &mut self,
         chooser: &Chooser,
@@ -165,37 +154,23 @@ impl<'s> Taking<'_, '_, '_, 's> {
         path_seconds: Option<f64>,
     ) -> Result<Option<(Offer, Solved)>, Failure> {
         let world = self.making.world;
-        let mut offer = offer;
-        let mut before: Option<Law> = None;
-        let mut is_last = false;
-        loop {
+        let is_judged = Viewing::is_judged(self.sight.scene);
+        let settled = settle(chooser, offer, path_seconds, |offer| {
             self.run.options = chooser.with(offer.family, offer.rung, Some(offer.samples))?;
             let begin = world.now();
-            let solved = match self.solve() {
-                Ok(solved) => solved,
-                // More memory than there is: the rung below fitted.
-                Err(Failure::World(_)) if before.is_some() && !is_last => {
-                    (offer.rung, is_last) = (offer.rung - 1, true);
-                    continue;
-                }
-                Err(Failure::World(_)) if path_seconds.is_some() => return Ok(None),
-                Err(failure) => return Err(failure),
-            };
-            if !offer.family.has_rungs() || !Viewing::is_judged(self.sight.scene) {
-                return Ok(Some((offer, solved)));
-            }
+            let solved = self.solve()?;
             let shared = world.now().saturating_sub(begin).as_secs_f64();
-            let law = self.measure(pilot, &solved, shared)?;
-            match verdict(chooser, offer, law, before, (path_seconds, is_last)) {
-                Verdict::Dropped => return Ok(None),
-                Verdict::Climb(above) => (offer, before) = (above, Some(law)),
-                Verdict::Kept(kept) => {
-                    let n = Some(kept.samples);
-                    self.run.options = chooser.with(kept.family, kept.rung, n)?;
-                    return Ok(Some((kept, solved)));
-                }
-            }
+            let law = if is_judged && offer.family.has_rungs() {
+                Some(self.measure(pilot, &solved, shared)?)
+            } else {
+                None
+            };
+            Ok((solved, law))
+        })?;
+        if let Some((kept, _)) = &settled {
+            self.run.options = chooser.with(kept.family, kept.rung, Some(kept.samples))?;
         }
+        Ok(settled)
     }
 
     /// What the picture costs and how wrong it will be, with light that is solved.
@@ -207,51 +182,6 @@ impl<'s> Taking<'_, '_, '_, 's> {
         let measure = || pilot.measure(&viewing, sight, (&solved.solution, shared));
         self.studio.seconds.time(world, Phase::Prepare, measure)
     }
-}
-
-/// Whether an offer whose light was measured keeps the wanted error, and what to do if it does not.
-fn verdict(
-    chooser: &Chooser,
-    offer: Offer,
-    law: Law,
-    before: Option<Law>,
-    (path_seconds, is_last): (Option<f64>, bool),
-) -> Verdict {
-    let Wish::Error(wanted) = chooser.wish else {
-        return Verdict::Kept(offer);
-    };
-    let with = |n: u32| {
-        let samples = chooser.samples.unwrap_or(n);
-        Verdict::Kept(Offer {
-            samples,
-            error: law.error(samples),
-            ..offer
-        })
-    };
-    if let Some(n) = law.samples_for(wanted) {
-        let n = n.max(4).next_multiple_of(2);
-        // What is solved is solved.
-        let left = law.seconds(n) - law.shared;
-        return match path_seconds {
-            Some(path) if left > path => Verdict::Dropped,
-            _ => with(n),
-        };
-    }
-    let above = law.climbed(offer.family, 1);
-    let is_sooner = path_seconds.is_none_or(|path| above.seconds(4) < path);
-    let has_gained = before.is_none_or(|before| law.bias < NO_GAIN * before.bias);
-    if is_sooner && has_gained && offer.rung < TOP && !is_last {
-        return Verdict::Climb(Offer {
-            rung: offer.rung + 1,
-            ..offer
-        });
-    }
-    if path_seconds.is_some() {
-        return Verdict::Dropped;
-    }
-    let n = law.noise / (NOISE_BESIDE_BIAS * wanted).powi(2);
-    let n = n.clamp(*SAMPLES_BESIDE_BIAS.start(), *SAMPLES_BESIDE_BIAS.end());
-    with((n as u32).next_multiple_of(2))
 }
 
 /// What people are told of a picture that is more wrong than they want, and what would not be.
