@@ -19,6 +19,11 @@ const AGAIN: u32 = 2;
 /// It then aims at this part of what it aimed at, times the wanted error over that of the picture.
 const BELOW: f64 = 0.9;
 
+/// A check that could as well find so many times the wanted error is made again with so many times the samples, up to this number.
+const FAR_LARGER: f64 = 1.5;
+const CHECK_AGAIN: u32 = 4;
+const MOST_SAMPLES_OF_HALF: u32 = 1 << 14;
+
 /// What error is aimed at, so that the wanted one is kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Aim {
@@ -138,8 +143,12 @@ impl<'s> Taking<'_, '_, '_, 's> {
         };
         let (mut shot, exposure) = self.shoot(solved, || until)?;
         if offer.family != Family::Path && shot.is_whole {
-            let n = samples_of_half(shot.effort.n_samples).max(pilot.samples() / 2);
+            let mut n = samples_of_half(shot.effort.n_samples).max(pilot.samples() / 2);
             self.check(Some(&*pilot.judge), &mut shot, n)?;
+            while is_vague(shot.effort.error, chooser.wish) && n < MOST_SAMPLES_OF_HALF {
+                n *= CHECK_AGAIN;
+                self.check(Some(&*pilot.judge), &mut shot, n)?;
+            }
         }
         Ok((shot, exposure))
     }
@@ -184,6 +193,14 @@ impl<'s> Taking<'_, '_, '_, 's> {
     }
 }
 
+/// Whether a check finds the wanted error kept but cannot rule out that it is far larger.
+fn is_vague(error: Option<PictureError>, wish: Wish) -> bool {
+    let Wish::Error(wanted) = wish else {
+        return false;
+    };
+    error.is_some_and(|error| error.relative <= wanted && error.high > FAR_LARGER * wanted)
+}
+
 /// What people are told of a picture that is more wrong than they want, and what would not be.
 fn unreached(shot: &Shot, most: f64, family: Family, path_seconds: Option<f64>) -> Option<String> {
     let wanted = format!("{:.1} %", 100.0 * most);
@@ -214,6 +231,23 @@ fn unreached(shot: &Shot, most: f64, family: Family, path_seconds: Option<f64>) 
 mod tests {
     use super::*;
     use crate::pipeline::report::Covers;
+
+    #[test]
+    fn a_check_is_vague_that_finds_an_error_kept_but_may_be_far_off() {
+        let error = |relative, high| {
+            Some(PictureError {
+                relative,
+                low: 0.0,
+                high,
+                covers: Covers::NoiseAndBias,
+            })
+        };
+        let wish = Wish::Error(0.02);
+        assert!(is_vague(error(0.0, 0.3), wish) && is_vague(error(0.018, 0.035), wish));
+        assert!(!is_vague(error(0.018, 0.022), wish), "it is known");
+        assert!(!is_vague(error(0.05, 0.3), wish), "it is missed");
+        assert!(!is_vague(None, wish) && !is_vague(error(0.0, 0.3), Wish::Seconds(1.0)));
+    }
 
     /// A picture that misses by a quarter is made again, aiming lower each time, but not for ever, and not where nothing lower was promised.
     #[test]
