@@ -336,3 +336,30 @@ fn a_film_is_chosen_by_its_noisiest_frame() {
     assert!(notes.contains("error of the worst frame: "), "{notes}");
     assert!(notes.contains("1 of 4 frames are black"), "{notes}");
 }
+
+/// Where path tracing lacks light, what is usual is all that is known: nothing is measured by a truth that is none, nor climbed to because of
+/// it.
+#[test]
+fn a_film_is_not_measured_by_a_truth_that_lacks_light() {
+    let bench = Bench::new(GLASS);
+    let flags = [
+        ("error", "0.2"),
+        ("renderer", "photon"),
+        ("final-gather", "0"),
+        ("orbit", "true"),
+        ("flight-frames", "2"),
+        ("flicker", "0"),
+        ("sun", "none"),
+        ("size", "24x16"),
+    ];
+    let output = bench.path("f");
+    let film = |making: &Making<'_>, studio: &mut Studio<'_>, run: &mut _| {
+        let reel = Reel::new(&bench.world, &output)?;
+        reel.open(&bench.world)?;
+        making.film(studio, run, &reel)
+    };
+    let made = bench.with(&flags, film).unwrap();
+    let chosen = fs::read_to_string(output.join("chosen.toml")).unwrap();
+    assert!(chosen.contains("global-photons = \"50000\""), "{chosen}");
+    assert!(made.effort.error.is_none(), "nothing tells it");
+}

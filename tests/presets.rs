@@ -1,8 +1,8 @@
 //! `--quality draft`, `preview` and `final` are points of measured fronts: over the scenes of `corpus.csv`, no other setting of the same
 //! method is faster, more exact on average, and nowhere heavily wrong.
 //!
-//! The table is what `cargo bench --bench corpus` measured on one thread in four minutes a scene, and eight to ten more where presets had not
-//! been reached by then. Each was measured in at least six scenes.
+//! The table is what `cargo bench --bench corpus` measured on one thread in four minutes a scene, and eight to ten more in eleven of them,
+//! nearly half an hour in the half-open door, where presets had not been reached by then. Each was measured in at least six scenes.
 //!
 //! What is heavily wrong in one scene does not beat a preset, however well it does in others: nobody who has chosen nothing may get a picture
 //! that shows something else. This decides one case: photons looked at directly take half of the time of gathered ones and are a little more

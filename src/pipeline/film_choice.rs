@@ -129,7 +129,7 @@ impl Shooting<'_, '_> {
         let world = self.making.world;
         let begin = world.now();
         let looks = self.looks(jobs, chooser.wish)?;
-        let Some(choice) = self.measure(jobs, &looks, chooser)? else {
+        let Some(choice) = self.measure(jobs, (&looks, begin), chooser)? else {
             return Ok(self.base.clone());
         };
         let of = |samples| chooser.with(choice.family, choice.rung, Some(samples));
@@ -156,15 +156,14 @@ impl Shooting<'_, '_> {
         of(law.samples_within(each).clamp(1, FAR_OFF * choice.samples))
     }
 
-    /// The method, rung and samples for all frames.
+    /// The method, rung and samples for all frames. Choosing began at `begin` and some frames were looked at since, which counts as time taken.
     fn measure(
         &mut self,
         jobs: &[Job],
-        looks: &[Look<'_>],
+        (looks, begin): (&[Look<'_>], Duration),
         whole: &Chooser,
     ) -> Result<Option<Offer>, Failure> {
         let world = self.making.world;
-        let begin = world.now();
         let noise = |look: &Look<'_>| look.path.noise;
         let hardest = looks.iter().max_by(|a, b| noise(a).total_cmp(&noise(b)));
         let Some(&Look { job, path }) = hardest else {
@@ -206,7 +205,8 @@ impl Shooting<'_, '_> {
         };
         let limit = limit.unwrap_or(Duration::MAX);
         let settled = settle(chooser, offer, path_seconds, |offer| {
-            if !offer.family.has_rungs() {
+            // Where path tracing lacks light its truth is none to measure by.
+            if !offer.family.has_rungs() || !is_judged {
                 return Ok(((), None));
             }
             light = None;

@@ -145,7 +145,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
         if offer.family != Family::Path && shot.is_whole {
             let mut n = samples_of_half(shot.effort.n_samples).max(pilot.samples() / 2);
             self.check(Some(&*pilot.judge), &mut shot, n)?;
-            while is_vague(shot.effort.error, chooser.wish) && n < MOST_SAMPLES_OF_HALF {
+            while is_unsure(shot.effort.error, chooser.wish) && n < MOST_SAMPLES_OF_HALF {
                 n *= CHECK_AGAIN;
                 self.check(Some(&*pilot.judge), &mut shot, n)?;
             }
@@ -194,7 +194,7 @@ impl<'s> Taking<'_, '_, '_, 's> {
 }
 
 /// Whether a check finds the wanted error kept but cannot rule out that it is far larger.
-fn is_vague(error: Option<PictureError>, wish: Wish) -> bool {
+fn is_unsure(error: Option<PictureError>, wish: Wish) -> bool {
     let Wish::Error(wanted) = wish else {
         return false;
     };
@@ -233,7 +233,7 @@ mod tests {
     use crate::pipeline::report::Covers;
 
     #[test]
-    fn a_check_is_vague_that_finds_an_error_kept_but_may_be_far_off() {
+    fn a_check_is_unsure_that_finds_an_error_kept_but_may_be_far_off() {
         let error = |relative, high| {
             Some(PictureError {
                 relative,
@@ -243,10 +243,10 @@ mod tests {
             })
         };
         let wish = Wish::Error(0.02);
-        assert!(is_vague(error(0.0, 0.3), wish) && is_vague(error(0.018, 0.035), wish));
-        assert!(!is_vague(error(0.018, 0.022), wish), "it is known");
-        assert!(!is_vague(error(0.05, 0.3), wish), "it is missed");
-        assert!(!is_vague(None, wish) && !is_vague(error(0.0, 0.3), Wish::Seconds(1.0)));
+        assert!(is_unsure(error(0.0, 0.3), wish) && is_unsure(error(0.018, 0.035), wish));
+        assert!(!is_unsure(error(0.018, 0.022), wish), "it is known");
+        assert!(!is_unsure(error(0.05, 0.3), wish), "it is missed");
+        assert!(!is_unsure(None, wish) && !is_unsure(error(0.0, 0.3), Wish::Seconds(1.0)));
     }
 
     /// A picture that misses by a quarter is made again, aiming lower each time, but not for ever, and not where nothing lower was promised.
