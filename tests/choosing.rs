@@ -82,6 +82,18 @@ impl Bench {
         self.folder.path().join(name)
     }
 
+    /// Makes a film as its frames in a folder.
+    fn film(&self, flags: &[(&str, &str)], folder: &str) -> Made {
+        let output = self.path(folder);
+        let flags = [&[("orbit", "true"), ("flicker", "0")], flags].concat();
+        self.with(&flags, |making, studio, run| {
+            let reel = Reel::new(&self.world, &output)?;
+            reel.open(&self.world)?;
+            making.film(studio, run, &reel)
+        })
+        .unwrap()
+    }
+
     /// Does what a command does with a model and these flags.
     fn with<T>(
         &self,
@@ -268,24 +280,9 @@ fn chosen_settings_make_the_same_picture_again() {
 #[test]
 fn a_film_chooses_once_and_its_frames_depend_on_nothing_else() {
     let bench = Bench::new(ROOM);
-    let flags = [
-        ("error", "0.3"),
-        ("orbit", "true"),
-        ("flight-frames", "4"),
-        ("flicker", "0"),
-        ("size", "24x16"),
-    ];
     let film = |folder: &str, frames: &str| {
-        let mut flags = flags.to_vec();
-        flags.push(("frames", frames));
-        let output = bench.path(folder);
-        bench
-            .with(&flags, |making, studio, run| {
-                let reel = Reel::new(&bench.world, &output)?;
-                reel.open(&bench.world)?;
-                making.film(studio, run, &reel)
-            })
-            .unwrap()
+        let flags = [("error", "0.3"), ("flight-frames", "4"), ("size", "24x16")];
+        bench.film(&[&flags[..], &[("frames", frames)]].concat(), folder)
     };
     let frame =
         |folder: &str, i: u32| fs::read(bench.path(folder).join(format!("frame-{i:06}.png")));
@@ -309,6 +306,39 @@ fn a_film_chooses_once_and_its_frames_depend_on_nothing_else() {
     assert_eq!(fs::read_to_string(&chosen).unwrap(), text);
 }
 
+/// Where whole samples are too large a step for the wanted time, some frames have one more: evenly, and others are not made anew for that.
+#[test]
+fn a_part_of_a_films_frames_has_one_sample_more() {
+    let bench = Bench::new(ROOM);
+    let flags = [
+        ("time", "0.5"),
+        ("renderer", "path"),
+        ("flight-frames", "4"),
+        ("size", "24x16"),
+    ];
+    let film = |part: &str| {
+        let path = bench.path("f/chosen.toml");
+        let text = fs::read_to_string(&path).unwrap();
+        let (before, after) = text.split_once("one_more_sample = ").unwrap();
+        let after = after.split_once('\n').unwrap().1;
+        fs::write(&path, format!("{before}one_more_sample = {part}\n{after}")).unwrap();
+        bench.film(&flags, "f")
+    };
+    bench.film(&flags, "f");
+    film("0.0");
+    let made = film("0.5");
+    assert_eq!((made.n_made, made.n_kept), (2, 2));
+    let notes = made.notes.join("\n");
+    assert!(
+        notes.contains("one sample more in 50 % of the frames"),
+        "{notes}"
+    );
+    let (all, some) = (film("0.0"), film("1.0"));
+    assert_eq!((all.n_made, some.n_made), (2, 4));
+    let of_pixel = |made: &Made| made.effort.n_samples / (24 * 16 * u64::from(made.n_made));
+    assert_eq!(of_pixel(&some), of_pixel(&all) + 1);
+}
+
 /// Seen from behind the room is black: nothing could be chosen by that frame, which is the one in the middle. Chosen by the noisiest frame,
 /// photon mapping keeps the error in all of them. Were the middle frame asked, few samples would seem to do: 18 %.
 #[test]
@@ -317,19 +347,11 @@ fn a_film_is_chosen_by_its_noisiest_frame() {
     let flags = [
         ("error", "0.06"),
         ("renderer", "photon"),
-        ("orbit", "true"),
         ("flight-frames", "4"),
-        ("flicker", "0"),
         ("sun", "none"),
     ];
-    let output = bench.path("f");
-    let film = |making: &Making<'_>, studio: &mut Studio<'_>, run: &mut _| {
-        let reel = Reel::new(&bench.world, &output)?;
-        reel.open(&bench.world)?;
-        making.film(studio, run, &reel)
-    };
-    let made = bench.with(&flags, film).unwrap();
-    let chosen = fs::read_to_string(output.join("chosen.toml")).unwrap();
+    let made = bench.film(&flags, "f");
+    let chosen = fs::read_to_string(bench.path("f/chosen.toml")).unwrap();
     let error = made.effort.error.unwrap();
     assert!(error.relative <= 0.06, "{} {chosen}", error.text());
     let notes = made.notes.join("\n");
@@ -346,20 +368,12 @@ fn a_film_is_not_measured_by_a_truth_that_lacks_light() {
         ("error", "0.2"),
         ("renderer", "photon"),
         ("final-gather", "0"),
-        ("orbit", "true"),
         ("flight-frames", "2"),
-        ("flicker", "0"),
         ("sun", "none"),
         ("size", "24x16"),
     ];
-    let output = bench.path("f");
-    let film = |making: &Making<'_>, studio: &mut Studio<'_>, run: &mut _| {
-        let reel = Reel::new(&bench.world, &output)?;
-        reel.open(&bench.world)?;
-        making.film(studio, run, &reel)
-    };
-    let made = bench.with(&flags, film).unwrap();
-    let chosen = fs::read_to_string(output.join("chosen.toml")).unwrap();
+    let made = bench.film(&flags, "f");
+    let chosen = fs::read_to_string(bench.path("f/chosen.toml")).unwrap();
     assert!(chosen.contains("global-photons = \"50000\""), "{chosen}");
     assert!(made.effort.error.is_none(), "nothing tells it");
 }

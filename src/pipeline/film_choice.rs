@@ -13,6 +13,7 @@ use super::choosing::settling::settle;
 use super::choosing::{Chooser, Wish};
 use super::content_hash::ContentHash;
 use super::failure::Failure;
+use super::film_samples::OneMore;
 use super::film_trial::{PLACES, evenly, places, shape};
 use super::filming::{Job, Shooting};
 use super::reel::Reel;
@@ -50,6 +51,9 @@ struct Kept {
     /// Options with their values.
     #[serde(default)]
     chosen: BTreeMap<String, String>,
+    /// The part of the frames that have one sample more.
+    #[serde(default)]
+    one_more_sample: f64,
 }
 
 /// Part of a wanted time for all these looks.
@@ -57,7 +61,7 @@ const PART_OF_LOOKS: f64 = 0.05;
 /// Part of the time that is left after which light that is not yet solved is given up.
 const PART_OF_SOLUTION: f64 = 0.8;
 /// So many times the samples that were expected are never taken: then a trial was disturbed.
-const FAR_OFF: u32 = 4;
+const FAR_OFF: f64 = 4.0;
 /// Part of a wanted time that is planned with once this is known.
 const TRIED: f64 = 0.98;
 
@@ -104,12 +108,15 @@ impl Shooting<'_, '_> {
         let key = ContentHash::of(keys).to_string();
         let path = reel.folder().join(FILE);
         let world = self.making.world;
-        self.base = match read(world, &path, &key)? {
-            Some(chosen) => chooser.apply(&chosen)?,
+        (self.base, self.one_more) = match read(world, &path, &key)? {
+            Some(kept) => {
+                let chosen: Vec<(String, String)> = kept.chosen.into_iter().collect();
+                (chooser.apply(&chosen)?, OneMore::of(kept.one_more_sample))
+            }
             None => {
-                let chosen = self.measured(&jobs, &chooser)?;
-                write(world, &path, &key, &chosen)?;
-                chosen
+                let (chosen, more) = self.measured(&jobs, &chooser)?;
+                write(world, &path, &key, (&chosen, more))?;
+                (chosen, more)
             }
         };
         if let (Wish::Error(most), Renderer::Path, None) =
@@ -124,23 +131,22 @@ impl Shooting<'_, '_> {
         Ok(())
     }
 
-    /// The options for all frames.
-    fn measured(&mut self, jobs: &[Job], chooser: &Chooser) -> Result<Options, Failure> {
-        let world = self.making.world;
-        let begin = world.now();
+    /// The options for all frames, and which have one sample more.
+    fn measured(&mut self, jobs: &[Job], chooser: &Chooser) -> Result<(Options, OneMore), Failure> {
+        let begin = self.studio.seconds.of_light();
         let looks = self.looks(jobs, chooser.wish)?;
         let Some(choice) = self.measure(jobs, (&looks, begin), chooser)? else {
-            return Ok(self.base.clone());
+            return Ok((self.base.clone(), OneMore::default()));
         };
         let of = |samples| chooser.with(choice.family, choice.rung, Some(samples));
         let chosen = of(choice.samples)?;
         let Wish::Seconds(seconds) = chooser.wish else {
-            return Ok(chosen);
+            return Ok((chosen, OneMore::default()));
         };
         let shape = shape(choice.samples, jobs.len());
         let is_open = chooser.samples.is_none() && n_scenes(jobs) == 1.0;
         let Some((n, most)) = shape.filter(|_| is_open) else {
-            return Ok(chosen);
+            return Ok((chosen, OneMore::default()));
         };
         let some: Vec<&Look<'_>> = evenly(looks.len(), n).map(|at| &looks[at]).collect();
         let places: Vec<&Job> = some.iter().map(|look| look.job).collect();
@@ -151,19 +157,20 @@ impl Shooting<'_, '_> {
             of_seconds: mean_seconds(&looks) / tried.max(f64::MIN_POSITIVE),
         };
         let law = average.frame(law);
-        let spent = world.now().saturating_sub(begin).as_secs_f64();
+        let spent = self.studio.seconds.of_light() - begin;
         let each = TRIED * (seconds - spent).max(0.0) / jobs.len() as f64;
-        of(law.samples_within(each).clamp(1, FAR_OFF * choice.samples))
+        let most = FAR_OFF * f64::from(choice.samples);
+        let (whole, more) = OneMore::split(law.room_within(each).min(most));
+        Ok((of(whole)?, more))
     }
 
-    /// The method, rung and samples for all frames. Choosing began at `begin` and some frames were looked at since, which counts as time taken.
+    /// The method, rung and samples for all frames. Some were looked at since the light had taken the seconds `begin`, which counts.
     fn measure(
         &mut self,
         jobs: &[Job],
-        (looks, begin): (&[Look<'_>], Duration),
+        (looks, begin): (&[Look<'_>], f64),
         whole: &Chooser,
     ) -> Result<Option<Offer>, Failure> {
-        let world = self.making.world;
         let noise = |look: &Look<'_>| look.path.noise;
         let hardest = looks.iter().max_by(|a, b| noise(a).total_cmp(&noise(b)));
         let Some(&Look { job, path }) = hardest else {
@@ -185,7 +192,7 @@ impl Shooting<'_, '_> {
                 ..*known
             })
             .collect();
-        let spent = world.now().saturating_sub(begin).as_secs_f64();
+        let spent = self.studio.seconds.of_light() - begin;
         let chooser = &of_each(whole, spent, jobs.len());
         let seconds = match chooser.wish {
             Wish::Seconds(seconds) => seconds,
@@ -357,11 +364,7 @@ fn with_check(law: Law, family: Family, pilot: &Pilot<'_>, part: f64) -> Law {
 }
 
 /// What was chosen for the film with this key.
-fn read(
-    world: &dyn World,
-    path: &Path,
-    key: &str,
-) -> Result<Option<Vec<(String, String)>>, Failure> {
+fn read(world: &dyn World, path: &Path, key: &str) -> Result<Option<Kept>, Failure> {
     if world.entry(path) != Entry::File {
         return Ok(None);
     }
@@ -371,15 +374,22 @@ fn read(
     let text = String::from_utf8_lossy(&file);
     // One of another film, or a damaged one, is written anew, unless somebody else wrote it.
     let kept: Option<Kept> = toml::from_str(&text).ok();
-    let kept = kept.filter(|kept| kept.film == key);
-    Ok(kept.map(|kept| kept.chosen.into_iter().collect()))
+    Ok(kept.filter(|kept| kept.film == key))
 }
 
 /// Keeps what was chosen.
-fn write(world: &dyn World, path: &Path, key: &str, options: &Options) -> Result<(), Failure> {
+fn write(
+    world: &dyn World,
+    path: &Path,
+    key: &str,
+    (options, more): (&Options, OneMore),
+) -> Result<(), Failure> {
     let mut text = format!(
         "{HEAD}settings that were chosen for all frames of this film. Without this file they are chosen anew.\n\
-         film = \"{key}\"\n\n[chosen]\n"
+         film = \"{key}\"\n\
+         # The part of the frames that have one sample more, so that the wanted time is used.\n\
+         one_more_sample = {:?}\n\n[chosen]\n",
+        more.part()
     );
     for entry in options.entries() {
         if matches!(entry.origin, Origin::Chosen { .. }) {

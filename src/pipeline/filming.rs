@@ -8,6 +8,7 @@ use super::content_hash::ContentHash;
 use super::course;
 use super::exposing;
 use super::failure::Failure;
+use super::film_samples::OneMore;
 use super::frame::{FrameAudience, describe};
 use super::making::{Made, Making, UNLIT};
 use super::reel::Reel;
@@ -28,6 +29,7 @@ use crate::options::value::Renderer;
 use crate::options::{Options, Origin};
 use crate::scene::Scene;
 use std::collections::BTreeSet;
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 /// A frame to be.
@@ -39,6 +41,8 @@ pub(super) struct Job {
     pub(super) scene: ContentHash,
     /// All that the frame is made from.
     pub(super) key: String,
+    /// Samples of its pixels.
+    samples: NonZeroU32,
 }
 
 impl Job {
@@ -66,6 +70,8 @@ pub(super) struct Shooting<'a, 'w> {
     pub(super) until: Until,
     /// Where the film has a wanted time or error: frames that path tracing checks, unless it made them.
     pub(super) checked: Option<BTreeSet<u32>>,
+    /// Frames that have one sample more than the options say.
+    pub(super) one_more: OneMore,
     set: Option<Set>,
     done: Done,
 }
@@ -160,6 +166,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
             run,
             until: Until::Samples,
             checked: None,
+            one_more: OneMore::default(),
             set: None,
             done: Done::default(),
         }
@@ -200,6 +207,18 @@ impl<'a, 'w> Shooting<'a, 'w> {
         Ok(())
     }
 
+    /// Sets the options to this number of samples.
+    fn set_samples(&mut self, samples: NonZeroU32) -> Result<(), Failure> {
+        let origin = self.base.samples.origin;
+        let options = &mut self.run.options;
+        if options.samples.value == samples {
+            return Ok(());
+        }
+        options
+            .set("samples", &samples.to_string(), origin)
+            .map_err(|error| Failure::Usage(error.to_string()))
+    }
+
     /// All frames of the flight with all that each is made from.
     pub(super) fn jobs(&mut self, flight: &Flight) -> Result<Vec<Job>, Failure> {
         let cameras = course::cameras(self.run, flight)?;
@@ -213,6 +232,9 @@ impl<'a, 'w> Shooting<'a, 'w> {
         let mut jobs = Vec::with_capacity(cameras.len());
         for (frame, (moment, camera)) in (0..).zip(cameras) {
             self.set_moment(moment.step, moment.sun)?;
+            let samples = self.base.samples.value;
+            let samples = samples.saturating_add(self.one_more.has(frame).into());
+            self.set_samples(samples)?;
             let key = self
                 .run
                 .picture_key()
@@ -225,6 +247,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
                 camera,
                 scene: self.run.scene_key(),
                 key: key.to_string(),
+                samples,
             });
         }
         Ok(jobs)
@@ -355,6 +378,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
         exposure: f64,
     ) -> Result<bool, Failure> {
         let world = self.making.world;
+        self.set_samples(job.samples)?;
         let viewing = Viewing {
             audience: progress,
             ..self.making.viewing(self.run)
@@ -408,7 +432,10 @@ impl<'a, 'w> Shooting<'a, 'w> {
                     "chosen: `--renderer path`, each frame with as many samples as its error needs";
                 vec![text.to_owned()]
             }
-            Until::Samples | Until::Time(_) => told(self.run).into_iter().collect(),
+            Until::Samples | Until::Time(_) => told(self.run)
+                .map(|told| self.one_more.told(told))
+                .into_iter()
+                .collect(),
         };
         let mut notes = notes;
         let mut done = self.done;

@@ -18,6 +18,7 @@ pub mod exposing;
 pub mod failure;
 mod film_choice;
 mod film_flicker;
+mod film_samples;
 mod film_trial;
 pub mod filming;
 mod frame;

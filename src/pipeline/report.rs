@@ -97,6 +97,11 @@ impl PhaseSeconds {
         result
     }
 
+    /// Seconds for light: what a wanted time is that of, models grown and scenes built.
+    pub(super) fn of_light(&self) -> f64 {
+        self.prepare + self.render + self.check
+    }
+
     /// Phases that took noticeable time, for a line of status: `derive 0.52 s, render 3.10 s`.
     pub fn summary(&self) -> String {
         let phases = [

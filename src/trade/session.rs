@@ -26,7 +26,8 @@ use std::time::Duration;
 
 /// Longer side in pixels of the pictures that are compared, unless the user says how large they are.
 const SIDE: f64 = 240.0;
-/// A rung may take so many times what was expected before it is stopped; the first of a family this part of what is left.
+/// A rung may take so many times what was expected before it is stopped, and always this part of what is left: what was once stopped is
+/// measured when there is more time.
 const PATIENCE: f64 = 3.0;
 const FIRST_SHARE: f64 = 0.25;
 /// How often the clock is looked at.
@@ -213,7 +214,7 @@ impl Session<'_> {
         let limit = match climb.expected() {
             None => FIRST_SHARE * left,
             Some(seconds) if seconds > left => 0.0,
-            Some(seconds) => (PATIENCE * seconds).min(left),
+            Some(seconds) => (PATIENCE * seconds).max(FIRST_SHARE * left).min(left),
         };
         if limit <= 0.0 {
             climb.is_done = true;

@@ -45,18 +45,20 @@ const LIFT: f64 = 0.5;
 /// How high looking up for that starts, in radii: photons are stored with 24 bits per coordinate.
 const NEAR: f64 = 0.02;
 
-/// Part of the radius within which light counts as inside, where it is compared with that outside: a border of rings.
-const INNER: f64 = 2.0 / 3.0;
+/// Rings of the disk whose light is compared: what is fine beside the kernel shows in the inmost of them, what is coarse in all.
+const COMPARED: usize = 3;
 
-/// How many standard deviations light inside and outside may differ. The bias that goes with such a difference costs more than the
-/// noise of a kernel of half the radius from 1.5 on; tests of even light fail by chance at 2.5 once in a hundred.
-const TELLING: f64 = 2.5;
+/// How many standard deviations light inside and outside of each border may differ. The bias that goes with such a difference beyond the
+/// outer one costs more than the noise of a kernel of half the radius from 1.5 on; tests of even light fail by chance at 2.5 once in a
+/// hundred. Few photons lie within the inner border: what its test lets halve by chance is noisy by just that chance, so it is rarer, once in
+/// two thousand.
+const TELLING: [f64; COMPARED - 1] = [3.5, 2.5];
 
 /// How far aside the middle of the light may lie, in radii: that of an edge lies at 0.34, that of a linear fall to 0 at 0.17.
 const ASIDE: f64 = 0.2;
 
-/// The least share of the disk that must be surface inside and outside for a comparison.
-const COMPARABLE: f64 = 0.1;
+/// The least share of the disk that must be surface inside and outside for a comparison: half of the inmost ring.
+const COMPARABLE: f64 = 0.05;
 
 /// The surface round a point, as the cells of the disk see it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,8 +67,8 @@ pub(super) struct Measured {
     kernel_area: f64,
     /// The same, times the place in radii.
     moment: DVec2,
-    /// Area of the surface within [`INNER`] of the radius, and beyond, m².
-    areas: [f64; 2],
+    /// Area of the surface in each of the compared rings, m².
+    areas: [f64; COMPARED],
     hidden: Hidden,
 }
 
@@ -136,7 +138,7 @@ pub(super) fn estimate(
 ) -> Estimate {
     let frame = Frame::from_normal(spot.normal);
     let mut flux = Rgb::BLACK;
-    let (mut powers, mut squares) = ([0.0; 2], 0.0);
+    let (mut powers, mut squares) = ([0.0; COMPARED], 0.0);
     let (mut weights, mut moment) = (0.0, DVec2::ZERO);
     let thickness = THICKNESS * radius;
     photons.near_plane(spot.position, spot.normal, thickness, |photon| {
@@ -153,7 +155,7 @@ pub(super) fn estimate(
         let power = photon.power();
         flux += power * (1.0 - share);
         let power = power.sum();
-        powers[usize::from(share >= INNER * INNER)] += power;
+        powers[ring_of(share)] += power;
         squares += power * power;
         weights += power * (1.0 - share);
         moment += flat * (power * (1.0 - share));
@@ -165,7 +167,7 @@ pub(super) fn estimate(
             is_even: true,
         };
     }
-    let power = powers[0] + powers[1];
+    let power = powers.iter().sum::<f64>();
     let n = power * power / squares;
     let aside = moment / weights - measured.moment / measured.kernel_area;
     Estimate {
@@ -175,17 +177,29 @@ pub(super) fn estimate(
     }
 }
 
-/// Whether the light inside is that outside, as far as `n` photons can tell.
-fn is_same_inside(powers: [f64; 2], areas: [f64; 2], n: f64, radius: f64) -> bool {
+/// The compared ring of a point of the unit disk, by its squared distance from the middle.
+fn ring_of(square: f64) -> usize {
+    const BORDER: f64 = 1.0 / (COMPARED * COMPARED) as f64;
+    (1..COMPARED)
+        .filter(|ring| square >= (ring * ring) as f64 * BORDER)
+        .count()
+}
+
+/// Whether the light within each border of rings is that beyond, as far as `n` photons can tell.
+fn is_same_inside(powers: [f64; COMPARED], areas: [f64; COMPARED], n: f64, radius: f64) -> bool {
     let disk = PI * radius * radius;
-    if areas.iter().any(|area| *area < COMPARABLE * disk) {
-        return true;
-    }
-    let area = areas[0] + areas[1];
-    let mean = (powers[0] + powers[1]) / area;
-    let difference = (powers[0] / areas[0] - powers[1] / areas[1]).abs() / mean;
-    let variance = (area / areas[0] + area / areas[1]) / n;
-    difference <= TELLING * variance.sqrt()
+    let (power, area) = (powers.iter().sum::<f64>(), areas.iter().sum::<f64>());
+    TELLING.iter().zip(1..).all(|(telling, border)| {
+        let inside = |of: &[f64]| of[..border].iter().sum::<f64>();
+        let (inner, within) = (inside(&areas), inside(&powers));
+        let (outer, beyond) = (area - inner, power - within);
+        if inner.min(outer) < COMPARABLE * disk {
+            return true;
+        }
+        let difference = (within / inner - beyond / outer).abs() * area / power;
+        let variance = (area / inner + area / outer) / n;
+        difference <= telling * variance.sqrt()
+    })
 }
 
 /// The cell of a point of the unit disk, of the fine ones.
@@ -240,7 +254,7 @@ fn measure_in(
                     let area = cell_area * stretch;
                     measured.kernel_area += kernel * area;
                     measured.moment += flat * (kernel * area);
-                    measured.areas[usize::from(distance >= INNER)] += area;
+                    measured.areas[ring * COMPARED / rings] += area;
                 }
                 Seen::Nothing => is_whole = false,
                 Seen::Obstacle => {

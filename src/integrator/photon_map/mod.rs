@@ -57,6 +57,7 @@ use glam::DVec3;
 use irradiance::IrradianceMap;
 use pieces::PiecePower;
 use progressive::Progressive;
+use radius::Sizes;
 pub use solution::PhotonSolution;
 use spots::World;
 use std::collections::BTreeMap;
@@ -279,7 +280,12 @@ impl PhotonMapping {
         pass.plan(context)?;
         let first = pass.photons(0, context)?;
         let mut n_stored = first.len() as u64;
-        let mut light = Progressive::begin(world, first, self.photon_area, self.passes);
+        let sizes = match (self.photon_area, wanted) {
+            (Some(area), _) => Sizes::Area(area),
+            (None, Wanted::Caustics) => Sizes::Narrow,
+            (None, _) => Sizes::Wide,
+        };
+        let mut light = Progressive::begin(world, first, sizes, self.passes);
         if let Some(light) = &mut light {
             for index in 1..self.passes {
                 let photons = pass.photons(index, context)?;

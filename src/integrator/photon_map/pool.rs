@@ -319,6 +319,7 @@ mod tests {
     use crate::geometry::Shape;
     use crate::integrator::photon_map::irradiance::IrradianceMap;
     use crate::integrator::photon_map::progressive::Progressive;
+    use crate::integrator::photon_map::radius::Sizes;
     use crate::integrator::photon_map::spots::World;
     use crate::integrator::photon_map::stored::Stored;
     use crate::material::Material;
@@ -401,8 +402,8 @@ mod tests {
             scene,
             center: DVec3::ZERO,
         };
-        let area = Some(PI * 0.02 * 0.02);
-        let mut light = Progressive::begin(world, photons(0), area, n_passes).unwrap();
+        let sizes = Sizes::Area(PI * 0.02 * 0.02);
+        let mut light = Progressive::begin(world, photons(0), sizes, n_passes).unwrap();
         for pass in 1..n_passes {
             light.add(pass + 1, photons(pass));
         }

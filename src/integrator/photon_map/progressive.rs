@@ -13,7 +13,7 @@
 use super::irradiance::{IrradianceMap, Layer, SPACING};
 use super::pieces::{PiecePower, over_area, split_off_pieces, together};
 use super::pool::Pool;
-use super::radius::Radii;
+use super::radius::{Radii, Sizes};
 use super::spots::{
     Key, SpotLayer, SpotLight, World, anywhere, cells, newly_found, scene_size, spots,
 };
@@ -48,10 +48,10 @@ impl<'s> Progressive<'s> {
     pub(super) fn begin(
         world: World<'s>,
         photons: Vec<Stored>,
-        area: Option<f64>,
+        sizes: Sizes,
         n_passes: u32,
     ) -> Option<Self> {
-        let radii = Radii::new(&photons, area, scene_size(world.scene))?;
+        let radii = Radii::new(&photons, sizes, scene_size(world.scene))?;
         let last = shrunk(n_passes);
         let usual = radii.usual * last;
         let n_photons = photons.len();

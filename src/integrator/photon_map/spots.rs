@@ -1,8 +1,9 @@
 //! Where irradiance is sampled, and with how large a kernel.
 //!
 //! A given *Photon area* is one kernel for all: places on the surfaces a fraction of its radius apart, at photons. Chosen
-//! automatically, the kernel is begun with where about 1600 photons are in it, and halved where these show that the light is not even
-//! ([`Estimate::is_even`](super::estimate::Estimate::is_even)), as long as 50 are left: smooth light is calm, the rims of caustics are sharp.
+//! automatically, the kernel is begun with far wider than most places need ([`Sizes`](super::radius::Sizes)), and halved where the photons
+//! in it show that the light is not even ([`Estimate::is_even`](super::estimate::Estimate::is_even)), as long as 50 are left: smooth light is
+//! calm, dim or bright, and the rims of caustics are sharp. More photons tell less uneven light, so blur and noise vanish together.
 //! So [`Schregle2003`](crate::references#schregle2003) compensates bias, with as many photons as their mean allows; here the place
 //! where the light changes counts too, and the real area is measured for each size.
 
@@ -387,6 +388,7 @@ fn firsts(places: Vec<Place>, width: f64) -> Vec<Place> {
 mod tests {
     use super::*;
     use crate::integrator::photon_map::irradiance::SPACING;
+    use crate::integrator::photon_map::radius::Sizes;
     use crate::material::Material;
     use crate::math::rng;
     use crate::validation::room::{Room, square};
@@ -466,9 +468,47 @@ mod tests {
         for radius in [4.0, 1.0] {
             let radius = radius * usual;
             let area = PI * radius * radius;
-            let fixed = Radii::new(&photons(1000), Some(area), 10.0).unwrap();
+            let fixed = Radii::new(&photons(1000), Sizes::Area(area), 10.0).unwrap();
             let (with_one, _) = error(&scene, fixed);
             assert!(found < 0.75 * with_one, "{radius}: {found} {with_one}");
         }
+    }
+
+    /// Where a two hundredth of the light falls, narrow kernels hold 8 photons and are a third off, wide ones are calm. Their mean is of some
+    /// dozens of independent kernels: 0.1 is exceeded by chance less than once in 10⁶.
+    #[test]
+    fn the_dim_is_as_calm_as_the_bright() {
+        let room = Room::default().with(square(0.4), DAffine3::IDENTITY, Material::default());
+        let scene = room.scene().unwrap();
+        let world = World {
+            scene: &scene,
+            center: DVec3::ZERO,
+        };
+        let power = 1e-5;
+        let photon = |i: u64| {
+            let u = |k| rng::unit_f64(rng::hash(&[i, k]));
+            let (x, y) = (u(0) * 0.4, u(1) * 0.8 - 0.4);
+            let x = if i.is_multiple_of(201) { x } else { -x };
+            Stored::at(DVec3::new(x, y, 0.0), DVec3::Z, power)
+        };
+        let photons: Vec<Stored> = (0..100_000).map(photon).collect();
+        let deviation = |sizes| {
+            let radii = Radii::new(&photons, sizes, 10.0).unwrap();
+            let (mut sum, mut area) = (0.0, 0.0);
+            for layer in spots(&world, photons.clone(), radii, SPACING) {
+                let cell = layer.spacing * layer.spacing;
+                for spot in &layer.spots {
+                    let (x, y) = (spot.place.position.x, spot.place.position.y);
+                    if x > 0.25 && y.abs() < 0.25 {
+                        let truth = 100_000.0 / 201.0 * power / 0.32;
+                        sum += (spot.irradiance.g / truth - 1.0).abs() * cell;
+                        area += cell;
+                    }
+                }
+            }
+            sum / area
+        };
+        let (wide, narrow) = (deviation(Sizes::Wide), deviation(Sizes::Narrow));
+        assert!(wide < 0.1 && narrow > 0.2, "{wide} {narrow}");
     }
 }

@@ -4,6 +4,7 @@ use super::estimate::{Spot, estimate, measure};
 use super::irradiance::Layer;
 use super::progressive::Progressive;
 pub(crate) use super::progressive::shrunk;
+use super::radius::Sizes;
 use super::spots::World;
 use super::stored::Stored;
 use crate::integrator::grid::Grid;
@@ -39,7 +40,8 @@ pub(crate) fn after_passes<P: Iterator<Item = Laid>>(
         scene,
         center: DVec3::ZERO,
     };
-    let Some(mut light) = Progressive::begin(world, stored(photons(0)), Some(area), n_passes)
+    let Some(mut light) =
+        Progressive::begin(world, stored(photons(0)), Sizes::Area(area), n_passes)
     else {
         return Vec::new();
     };

@@ -86,9 +86,15 @@ impl Law {
     /// Samples for which there is time, at most [`MOST_SAMPLES`]; 0 if not even for one.
     #[must_use]
     pub fn samples_within(&self, seconds: f64) -> u32 {
-        let left = seconds - self.shared - self.begin;
         // The conversion saturates; 0/0 is 0.
-        ((left / self.sample) as u32).min(MOST_SAMPLES)
+        self.room_within(seconds) as u32
+    }
+
+    /// The same with the part of a sample that there would be time for too.
+    #[must_use]
+    pub fn room_within(&self, seconds: f64) -> f64 {
+        let left = seconds - self.shared - self.begin;
+        (left / self.sample).clamp(0.0, f64::from(MOST_SAMPLES))
     }
 
     /// Samples with which the error is a little below this one, if there is such a number.
