@@ -35,7 +35,12 @@ const BUILT_IN: [(Quality, Renderer, Values); 9] = [
     (
         Quality::Preview,
         Renderer::Photon,
-        &[("samples", "16"), ("final-gather", "256")],
+        &[
+            ("samples", "32"),
+            ("global-photons", "1600000"),
+            ("caustic-photons", "1600000"),
+            ("final-gather", "0"),
+        ],
     ),
     (Quality::Preview, Renderer::Radiosity, &[("samples", "16")]),
     (Quality::Final, Renderer::Path, &[("samples", "512")]),
@@ -43,10 +48,10 @@ const BUILT_IN: [(Quality, Renderer, Values); 9] = [
         Quality::Final,
         Renderer::Photon,
         &[
-            ("samples", "32"),
-            ("global-photons", "4000000"),
-            ("caustic-photons", "4000000"),
-            ("final-gather", "512"),
+            ("samples", "64"),
+            ("global-photons", "6400000"),
+            ("caustic-photons", "6400000"),
+            ("final-gather", "0"),
         ],
     ),
     (
