@@ -38,7 +38,7 @@ for model, size, rows in [
         ('--renderer radiosity --supersampling auto --samples 16', 8),
         ('--renderer radiosity --supersampling auto --samples 64', 8),
         ('--renderer photon --final-gather 0 --samples 64', 2),
-        ('--renderer photon --samples 16', 2),
+        ('--renderer photon --global-photons 1000000 --caustic-photons 1000000 --final-gather 256 --samples 16', 2),
     ]),
     ('forest.rgg', '160x90', [
         ('--renderer path --samples 4', 2),

@@ -374,6 +374,8 @@ fn a_film_is_not_measured_by_a_truth_that_lacks_light() {
     ];
     let made = bench.film(&flags, "f");
     let chosen = fs::read_to_string(bench.path("f/chosen.toml")).unwrap();
-    assert!(chosen.contains("global-photons = \"50000\""), "{chosen}");
+    // The first rung or, where the pilot found nothing that seemed to do, what is usual in the blind.
+    let usual = ["50000", "200000"].map(|n| format!("global-photons = \"{n}\""));
+    assert!(usual.iter().any(|n| chosen.contains(n)), "{chosen}");
     assert!(made.effort.error.is_none(), "nothing tells it");
 }

@@ -269,7 +269,7 @@ options! {
     photon_area: Option<Area> = "auto", "photon-area", "M2", Render, Solution, PICTURING;
     /// Passes of photon mapping: each sends as many other photons, in the memory of one; noise and blur fall with their number
     passes: NonZeroU32 = "1", "passes", "N", Render, Solution, PICTURING;
-    /// Rays by which photon mapping and radiosity gather indirect light anew where the camera looks; `0`: none, straight from the photons, blotchier, or from the elements; `auto`: 256 over photons, none over radiosity
+    /// Rays by which photon mapping and radiosity gather indirect light anew where the camera looks; `0`: none, straight from the photons, faster and blotchier where light is dim, or from the elements; `auto`: 256 over photons, none over radiosity; each `--quality` says 0 over photons
     final_gather: GatherRays = "auto", "final-gather", "N", Render, View, SOLVING;
     /// How radiosity is solved: `gather` (each patch collects from all others), `shoot` (the brightest patches shoot) or `stochastic` (all patches shoot rays; for plants); `auto`: `gather` up to 20,000 patches, beyond `stochastic`
     solver: Option<Solver> = "auto", "solver", "NAME", Render, Solution, SOLVING;
