@@ -38,7 +38,6 @@ const BUILT_IN: [(Quality, Renderer, Values); 9] = [
         &[
             ("samples", "32"),
             ("global-photons", "1600000"),
-            ("caustic-photons", "1600000"),
             ("final-gather", "0"),
         ],
     ),
