@@ -63,7 +63,7 @@ const PART_OF_SOLUTION: f64 = 0.8;
 /// So many times the samples that were expected are never taken: then a trial was disturbed.
 const FAR_OFF: f64 = 4.0;
 /// Part of a wanted time that is planned with once this is known.
-const TRIED: f64 = 0.98;
+const TRIED: f64 = 0.97;
 
 /// A frame as path tracing finds it at a glance.
 struct Look<'j> {
@@ -146,11 +146,11 @@ impl Shooting<'_, '_> {
         let shape = shape(choice.samples, jobs.len());
         let is_open = chooser.samples.is_none() && n_scenes(jobs) == 1.0;
         let Some((n, most)) = shape.filter(|_| is_open) else {
-            return Ok((chosen, OneMore::default()));
+            return Ok((chosen, OneMore::of(choice.part_of_sample)));
         };
         let some: Vec<&Look<'_>> = evenly(looks.len(), n).map(|at| &looks[at]).collect();
         let places: Vec<&Job> = some.iter().map(|look| look.job).collect();
-        let law = self.trial(&places, jobs.len(), (&of(1)?, &of(most)?))?;
+        let law = self.trial(&places, jobs.len(), (&of(1)?, &of(most)?, choice.samples))?;
         let tried = some.iter().map(|look| look.path.sample).sum::<f64>() / n as f64;
         let average = Average {
             of_shared: 1.0,
@@ -201,8 +201,9 @@ impl Shooting<'_, '_> {
         let is_judged = Viewing::is_judged(&scene);
         let best = chooser.best(&known, seconds);
         let offer = best.unwrap_or_else(|| chooser.last_resort(&known, is_judged));
-        let path = chooser.path_offer(&average.frame(pilot.path));
-        let path_seconds = (chooser.is_free() && is_judged).then_some(path.seconds);
+        let path_law = average.frame(pilot.path);
+        let path_seconds = chooser.path_offer(&path_law).seconds;
+        let path_seconds = (chooser.is_free() && is_judged).then_some(path_seconds);
         let mut light = None;
         let limit = match whole.wish {
             Wish::Seconds(seconds) if path_seconds.is_some() => {
@@ -222,7 +223,14 @@ impl Shooting<'_, '_> {
             light = Some(solved);
             Ok(((), Some(of_frame(law, offer.family))))
         })?;
-        let offer = settled.map_or(path, |(offer, ())| offer);
+        let offer = settled.map_or_else(
+            || {
+                // What was tried in vain took its time.
+                let spent = self.studio.seconds.of_light() - begin;
+                of_each(whole, spent, jobs.len()).path_offer(&path_law)
+            },
+            |(offer, ())| offer,
+        );
         if let Some(solved) = light.filter(|_| offer.family.has_rungs()) {
             self.enter_with(job, scene.clone(), solved);
         }

@@ -14,7 +14,7 @@ use crate::scene::Scene;
 /// Frames that stand for a film, at most.
 pub(super) const PLACES: usize = 5;
 /// Part of the samples of a whole film that are taken to find out what its frames really cost.
-const PART_OF_FRAMES: f64 = 0.08;
+const PART_OF_FRAMES: f64 = 0.1;
 
 /// Some frames of a film, or all if it has no more: each in the middle of an equal part.
 pub(super) fn places(jobs: &[Job]) -> Vec<&Job> {
@@ -39,12 +39,12 @@ pub(super) fn shape(samples: u32, n_frames: usize) -> Option<(usize, u32)> {
 
 impl Shooting<'_, '_> {
     /// What an average frame costs once the light is solved, found by making these frames of a film that shows a single scene: with one
-    /// sample of each pixel, and with those of the second options.
+    /// sample of each pixel, and with those of the second options. The check of a frame is that of one with the samples that are expected.
     pub(super) fn trial(
         &mut self,
         jobs: &[&Job],
         n_frames: usize,
-        (one, more): (&Options, &Options),
+        (one, more, expected): (&Options, &Options, u32),
     ) -> Result<Law, Failure> {
         let Some(first) = jobs.first() else {
             return Ok(Law::default());
@@ -62,7 +62,10 @@ impl Shooting<'_, '_> {
                         .map(|job| costs(&viewing, (prepared, &job.camera), (one, more)));
                     let costs = costs.collect::<Result<Vec<(Law, Shot)>, Failure>>()?;
                     let laws: Vec<Law> = costs.iter().map(|(law, _)| *law).collect();
-                    let check = check(&viewing, scene, &first.camera, &costs[0].1)?;
+                    let shot = &costs[0].1;
+                    let n_samples = shot.effort.n_samples * u64::from(expected)
+                        / u64::from(more.samples.value.get());
+                    let check = check(&viewing, (scene, &first.camera), shot, n_samples)?;
                     let n_checks = PLACES.min(n_frames) as f64;
                     let mut law = mean_of(&laws, n_frames);
                     law.shared += check * n_checks / n_frames as f64;
@@ -75,18 +78,18 @@ impl Shooting<'_, '_> {
     }
 }
 
-/// Seconds of the check of a frame, if it is checked.
+/// Seconds of the check of a frame with so many samples in all, if it is checked.
 fn check(
     viewing: &Viewing<'_>,
-    scene: &Scene,
-    camera: &Camera,
+    (scene, camera): (&Scene, &Camera),
     shot: &Shot,
+    n_samples: u64,
 ) -> Result<f64, Failure> {
     let Some(judge) = viewing.needed_judge(scene)? else {
         return Ok(0.0);
     };
     let begin = viewing.world.now();
-    let n = samples_of_half(shot.effort.n_samples);
+    let n = samples_of_half(n_samples);
     viewing.spot_check(&*judge, camera, shot, n)?;
     Ok(viewing.world.now().saturating_sub(begin).as_secs_f64())
 }
@@ -145,7 +148,7 @@ mod tests {
         assert_eq!(found(100), [10, 30, 50, 70, 90]);
     }
 
-    /// Trials take a twelfth of the samples of a film at most, none where frames are so few that they would take more.
+    /// Trials take a tenth of the samples of a film at most, none where frames are so few that they would take more.
     #[test]
     fn trials_are_a_small_part_of_a_film() {
         for (samples, n_frames) in [
@@ -163,8 +166,9 @@ mod tests {
             let film = f64::from(samples) * n_frames as f64;
             assert!(all <= PART_OF_FRAMES * film, "{samples} {n_frames} {all}");
         }
-        assert_eq!(shape(1, 40), None);
-        assert_eq!(shape(2, 40), Some((1, 2)));
+        assert_eq!(shape(1, 39), None);
+        assert_eq!(shape(1, 40), Some((1, 2)));
+        assert_eq!(shape(2, 40), Some((2, 2)));
         assert_eq!(shape(8, 250), Some((5, 8)));
     }
 

@@ -57,6 +57,8 @@ pub struct Offer {
     pub rung: u32,
     /// Samples per pixel.
     pub samples: u32,
+    /// The part of one more sample that a wanted time has room for.
+    pub part_of_sample: f64,
     /// Seconds that the picture will take.
     pub seconds: f64,
     /// Relative error that it will have.
@@ -148,6 +150,7 @@ impl Known {
             family: self.family,
             rung: self.rung,
             samples,
+            part_of_sample: 0.0,
             seconds: self.law.seconds(samples),
             error: self.law.error(samples),
         }
@@ -157,9 +160,14 @@ impl Known {
     #[must_use]
     pub fn best_within(self, seconds: f64, samples: Option<u32>) -> Option<Offer> {
         let in_time = |known: Self| {
+            let room = known.law.room_within(seconds);
             let most = known.law.samples_within(seconds);
             let n = samples.unwrap_or(most);
-            (n >= 1 && n <= most).then(|| known.offer(n))
+            let part_of_sample = if samples.is_none() { room.fract() } else { 0.0 };
+            (n >= 1 && n <= most).then(|| Offer {
+                part_of_sample,
+                ..known.offer(n)
+            })
         };
         self.ladder()
             .filter_map(in_time)
@@ -261,6 +269,8 @@ mod tests {
                 offer.seconds <= seconds && offer.error <= before,
                 "{offer:?}"
             );
+            let rest = offer.part_of_sample * photons().law.sample;
+            assert!((seconds - offer.seconds - rest).abs() < 1e-9, "{offer:?}");
             before = offer.error;
         }
         assert_eq!(photons().best_within(0.1, None), None);
@@ -275,6 +285,6 @@ mod tests {
             Some(200)
         );
         let offer = photons().best_within(10.0, Some(3)).unwrap();
-        assert_eq!(offer.samples, 3);
+        assert_eq!((offer.samples, offer.part_of_sample), (3, 0.0));
     }
 }

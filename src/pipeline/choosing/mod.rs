@@ -308,7 +308,7 @@ impl Chooser {
         Known { family, rung, law }.offer(samples)
     }
 
-    /// Path tracing, as long as the wish needs.
+    /// Path tracing, as long as the wish needs; with one sample where the time has no room for any.
     #[must_use]
     pub fn path_offer(&self, law: &Law) -> Offer {
         let path = Known {
@@ -316,11 +316,11 @@ impl Chooser {
             rung: 0,
             law: *law,
         };
-        let offer = match self.wish {
-            Wish::Error(error) => path.fastest_for(error, self.samples),
-            Wish::Seconds(seconds) => path.best_within(seconds, self.samples),
+        let (offer, otherwise) = match self.wish {
+            Wish::Error(error) => (path.fastest_for(error, self.samples), law::MOST_SAMPLES),
+            Wish::Seconds(seconds) => (path.best_within(seconds, self.samples), 1),
         };
-        offer.unwrap_or_else(|| path.offer(self.samples.unwrap_or(law::MOST_SAMPLES)))
+        offer.unwrap_or_else(|| path.offer(self.samples.unwrap_or(otherwise)))
     }
 
     /// Whether this time is so short that it is path traced without trials.

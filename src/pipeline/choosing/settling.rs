@@ -67,17 +67,21 @@ fn verdict(
     before: Option<Law>,
     (path_seconds, is_last): (Option<f64>, bool),
 ) -> Verdict {
-    let with = |n: u32| {
+    let with = |n: u32, part: f64| {
         let samples = chooser.samples.unwrap_or(n);
         Verdict::Kept(Offer {
             samples,
+            part_of_sample: if chooser.samples.is_none() { part } else { 0.0 },
             error: law.error(samples),
             ..offer
         })
     };
     let wanted = match chooser.wish {
         Wish::Error(wanted) => wanted,
-        Wish::Seconds(seconds) => return with(law.samples_within(seconds).max(1)),
+        Wish::Seconds(seconds) => {
+            let room = law.room_within(seconds).max(1.0);
+            return with(room as u32, room.fract());
+        }
     };
     if let Some(n) = law.samples_for(wanted) {
         let n = n.max(4).next_multiple_of(2);
@@ -85,7 +89,7 @@ fn verdict(
         let left = law.seconds(n) - law.shared;
         return match path_seconds {
             Some(path) if left > path => Verdict::Dropped,
-            _ => with(n),
+            _ => with(n, 0.0),
         };
     }
     let above = law.climbed(offer.family, 1);
@@ -102,5 +106,5 @@ fn verdict(
     }
     let n = law.noise / (NOISE_BESIDE_BIAS * wanted).powi(2);
     let n = n.clamp(*SAMPLES_BESIDE_BIAS.start(), *SAMPLES_BESIDE_BIAS.end());
-    with((n as u32).next_multiple_of(2))
+    with((n as u32).next_multiple_of(2), 0.0)
 }

@@ -128,6 +128,14 @@ fn the_soonest_is_chosen_and_another_method_only_if_it_is_clearly_sooner() {
     assert_eq!(chooser.path_offer(&path.law), offer);
 }
 
+/// A time without room for a single sample is no reason to take as many as there can be.
+#[test]
+fn where_time_is_too_short_for_path_tracing_it_has_one_sample() {
+    let wish = Wish::Seconds(0.5);
+    let chooser = Chooser::new(&options(&[("time", "0.5", Origin::Flag)]), wish);
+    assert_eq!(chooser.path_offer(&noisy(1.0)).samples, 1);
+}
+
 #[test]
 fn in_a_given_time_the_least_error_is_chosen() {
     let wish = Wish::Seconds(10.0);

@@ -262,6 +262,7 @@ mod tests {
             family: Family::PhotonMap,
             rung: 2,
             samples: 8,
+            part_of_sample: 0.0,
             seconds: 1.0,
             error,
         };
