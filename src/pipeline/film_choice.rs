@@ -114,7 +114,8 @@ impl Shooting<'_, '_> {
                 (chooser.apply(&chosen)?, OneMore::of(kept.one_more_sample))
             }
             None => {
-                let (chosen, more) = self.measured(&jobs, &chooser)?;
+                let leader = &jobs[flight.brightest() as usize];
+                let (chosen, more) = self.measured((&jobs, leader), &chooser)?;
                 write(world, &path, &key, (&chosen, more))?;
                 (chosen, more)
             }
@@ -131,8 +132,12 @@ impl Shooting<'_, '_> {
         Ok(())
     }
 
-    /// The options for all frames, and which have one sample more.
-    fn measured(&mut self, jobs: &[Job], chooser: &Chooser) -> Result<(Options, OneMore), Failure> {
+    /// The options for all frames, whose exposure suits the leader, and which have one sample more.
+    fn measured(
+        &mut self,
+        (jobs, leader): (&[Job], &Job),
+        chooser: &Chooser,
+    ) -> Result<(Options, OneMore), Failure> {
         let begin = self.studio.seconds.of_light();
         let looks = self.looks(jobs, chooser.wish)?;
         let Some(choice) = self.measure(jobs, (&looks, begin), chooser)? else {
@@ -150,6 +155,8 @@ impl Shooting<'_, '_> {
         };
         let some: Vec<&Look<'_>> = evenly(looks.len(), n).map(|at| &looks[at]).collect();
         let places: Vec<&Job> = some.iter().map(|look| look.job).collect();
+        // What is found for all frames is not looked for again, and counts as spent.
+        self.with_options(&chosen, leader, |this| this.exposure(leader))?;
         let law = self.trial(&places, jobs.len(), (&of(1)?, &of(most)?, choice.samples))?;
         let tried = some.iter().map(|look| look.path.sample).sum::<f64>() / n as f64;
         let average = Average {
@@ -219,7 +226,7 @@ impl Shooting<'_, '_> {
             }
             light = None;
             let options = chooser.with(offer.family, offer.rung, Some(offer.samples))?;
-            let (solved, law) = self.solved((job, &scene), options, &pilot, limit)?;
+            let (solved, law) = self.solved((job, &scene), &options, &pilot, limit)?;
             light = Some(solved);
             Ok(((), Some(of_frame(law, offer.family))))
         })?;
@@ -272,6 +279,20 @@ impl Shooting<'_, '_> {
         self.studio.build(self.run, self.making.cancel)
     }
 
+    /// Works on a frame with other options than the user's; those of the moment stay.
+    pub(super) fn with_options<T>(
+        &mut self,
+        options: &Options,
+        job: &Job,
+        work: impl FnOnce(&mut Self) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let user = std::mem::replace(&mut self.base, options.clone());
+        let moment = self.set_moment(job.moment.step, job.moment.sun);
+        let done = moment.and_then(|()| work(self));
+        self.base = user;
+        done
+    }
+
     fn pilot<'s>(
         &mut self,
         (scene, camera): (&'s Scene, &Camera),
@@ -303,15 +324,12 @@ impl Shooting<'_, '_> {
     fn solved(
         &mut self,
         (job, scene): (&Job, &Arc<Scene>),
-        options: Options,
+        options: &Options,
         pilot: &Pilot<'_>,
         limit: Duration,
     ) -> Result<(Solved, Law), Failure> {
         let world = self.making.world;
-        let before = std::mem::replace(&mut self.base, options);
-        let moment = self.set_moment(job.moment.step, job.moment.sun);
-        self.base = before;
-        moment?;
+        self.with_options(options, job, |_| Ok(()))?;
         self.making.audience.begins("preparing");
         let viewing = self.making.viewing(self.run);
         let begin = world.now();

@@ -49,10 +49,8 @@ impl Shooting<'_, '_> {
         let Some(first) = jobs.first() else {
             return Ok(Law::default());
         };
-        let user = std::mem::replace(&mut self.base, more.clone());
-        let moment = self.set_moment(first.moment.step, first.moment.sun);
-        let law = moment.and_then(|()| {
-            self.look(first, more, |this, scene, prepared| {
+        self.with_options(more, first, |this| {
+            this.look(first, more, |this, scene, prepared| {
                 this.making.audience.begins("measuring");
                 let viewing = this.making.viewing(this.run);
                 let phases = &mut this.studio.seconds;
@@ -65,33 +63,33 @@ impl Shooting<'_, '_> {
                     let shot = &costs[0].1;
                     let n_samples = shot.effort.n_samples * u64::from(expected)
                         / u64::from(more.samples.value.get());
-                    let check = check(&viewing, (scene, &first.camera), shot, n_samples)?;
+                    let (judge, check) = check(&viewing, (scene, &first.camera), shot, n_samples)?;
                     let n_checks = PLACES.min(n_frames) as f64;
                     let mut law = mean_of(&laws, n_frames);
-                    law.shared += check * n_checks / n_frames as f64;
+                    law.shared += (judge + check * n_checks) / n_frames as f64;
                     Ok(law)
                 })
             })
-        });
-        self.base = user;
-        law
+        })
     }
 }
 
-/// Seconds of the check of a frame with so many samples in all, if it is checked.
+/// Seconds of what checks, and of the check of a frame with so many samples in all, if it is checked.
 fn check(
     viewing: &Viewing<'_>,
     (scene, camera): (&Scene, &Camera),
     shot: &Shot,
     n_samples: u64,
-) -> Result<f64, Failure> {
+) -> Result<(f64, f64), Failure> {
+    let now = || viewing.world.now().as_secs_f64();
+    let begin = now();
     let Some(judge) = viewing.needed_judge(scene)? else {
-        return Ok(0.0);
+        return Ok((0.0, 0.0));
     };
-    let begin = viewing.world.now();
+    let ready = now();
     let n = samples_of_half(n_samples);
     viewing.spot_check(&*judge, camera, shot, n)?;
-    Ok(viewing.world.now().saturating_sub(begin).as_secs_f64())
+    Ok((ready - begin, now() - ready))
 }
 
 /// What one frame costs: what is kept for later frames is `shared`.

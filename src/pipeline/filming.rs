@@ -72,6 +72,8 @@ pub(super) struct Shooting<'a, 'w> {
     pub(super) checked: Option<BTreeSet<u32>>,
     /// Frames that have one sample more than the options say.
     pub(super) one_more: OneMore,
+    /// The exposure of all frames once it is known.
+    pub(super) exposure: Option<f64>,
     set: Option<Set>,
     done: Done,
 }
@@ -167,6 +169,7 @@ impl<'a, 'w> Shooting<'a, 'w> {
             until: Until::Samples,
             checked: None,
             one_more: OneMore::default(),
+            exposure: None,
             set: None,
             done: Done::default(),
         }
@@ -303,23 +306,6 @@ impl<'a, 'w> Shooting<'a, 'w> {
         let prepare = || viewing.prepare(&scene, &solution);
         let prepared = self.studio.seconds.time(world, Phase::Prepare, prepare)?;
         work(self, &scene, &prepared)
-    }
-
-    /// The exposure of all frames: what suits this one.
-    fn exposure(&mut self, job: &Job) -> Result<f64, Failure> {
-        if let Some(stops) = self.base.exposure.value {
-            return Ok(exposing::factor(stops));
-        }
-        let options = self.base.clone();
-        self.look(job, &options, |this, scene, prepared| {
-            let viewing = Viewing {
-                options: &options,
-                ..this.making.viewing(this.run)
-            };
-            let world = this.making.world;
-            let decide = || viewing.exposure(scene, prepared, &job.camera);
-            this.studio.seconds.time(world, Phase::Prepare, decide)
-        })
     }
 
     /// Makes frames, those of each scene together; whether it got to the end.

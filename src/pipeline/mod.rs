@@ -17,6 +17,7 @@ pub mod exporting;
 pub mod exposing;
 pub mod failure;
 mod film_choice;
+mod film_exposure;
 mod film_flicker;
 mod film_samples;
 mod film_trial;
