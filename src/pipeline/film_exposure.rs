@@ -1,4 +1,4 @@
-//! The exposure of a film.
+//! The exposure of a film: one for all frames, found in a small picture of the brightest with the film's own light.
 
 use super::exposing;
 use super::failure::Failure;
@@ -7,7 +7,10 @@ use super::report::Phase;
 use super::viewing::Viewing;
 
 impl Shooting<'_, '_> {
-    /// The exposure of all frames: what suits this one. It is looked for once, and does not depend on the number of samples.
+    /// The factor for the radiance of all frames: what suits this one. It is looked for once, and does not depend on the number of samples.
+    ///
+    /// # Errors
+    /// If it was stopped, or the light of its scene cannot be solved.
     pub(super) fn exposure(&mut self, job: &Job) -> Result<f64, Failure> {
         if let Some(stops) = self.base.exposure.value {
             return Ok(exposing::factor(stops));

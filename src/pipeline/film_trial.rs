@@ -61,7 +61,7 @@ impl Shooting<'_, '_> {
                     let costs = costs.collect::<Result<Vec<(Law, Shot)>, Failure>>()?;
                     let laws: Vec<Law> = costs.iter().map(|(law, _)| *law).collect();
                     let shot = &costs[0].1;
-                    let n_samples = shot.effort.n_samples * u64::from(expected)
+                    let n_samples = shot.effort.n_samples.saturating_mul(expected.into())
                         / u64::from(more.samples.value.get());
                     let (judge, check) = check(&viewing, (scene, &first.camera), shot, n_samples)?;
                     let n_checks = PLACES.min(n_frames) as f64;
